@@ -95,15 +95,14 @@ HouseLaws laws_of(ModelRun& run, int steps) {
   for (int n = 0; n < steps; ++n) {
     run.step();
     for (int i = 0; i < wheel_count(m); ++i) {
-      const double C = is_of_wheelset(m, i) ? m.wheelset[wheelset_of(m, i)].hertz[rail_of(m, i)]
-                                            : vehicle_wheel(m, i).contact.hertz;
+      const double C = m.contact[i].law.hertz;
       if (note(run.state.contact_force[i], hertz_force(C, run.outputs.contact_gap[i])))
         found.wheel_bore[static_cast<std::size_t>(i)] = true;
     }
     for (int i = 0; i < flange_count(m); ++i) {
       const ContactId contact = flange_contact(m, i);
       const double depth = std::max(-run.outputs.contact_gap[contact], 0.);
-      if (note(run.outputs.contact_force[contact], flange_of(m, contact).contact.stiffness * depth))
+      if (note(run.outputs.contact_force[contact], m.contact[contact].law.stiffness * depth))
         found.flange_bore[static_cast<std::size_t>(i)] = true;
     }
     for (std::int32_t j = 0; j < m.fixed.count; ++j)

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "online/contact/vehicle_contact.h"
 #include "online/step/step.h"
 #include "run/simulation.h"
 #include "support/shipped.h"
@@ -125,6 +126,49 @@ TEST_CASE("a spring of a system pulls a leaning rail along the track's axes", "[
   // A seat's force also counts on the roll of the rail (docs/cant.md), that of a system not.
   CHECK(difference(joined, in_seat) < 1e-3);
   CHECK(difference(joined, forces_of(scene)) > 1e-2);
+}
+
+TEST_CASE("contacts beside a rotor are pressed as deep as both make the rails sink",
+          "[beside_wheels]") {
+  // An arm turns about a joint on the left rail by 0.05 rad a step, and a spring pulls it from
+  // another place of the rail: its forces do not answer the rail's motions symmetrically. Forces
+  // are held over a step, in whose middle depths are taken.
+  const std::string scene =
+      track_of(0., "kind = \"modal\"\nmodes_per_bay = 2\n", "released") + kBogie +
+      "[[body]]\nname = \"arm\"\nmass_kg = 5.0\ninertia_kg_m2 = [0.4, 0.4, 0.4]\n"
+      "position_m = [12.9, 0.75, 0.0]\nvelocity_m_per_s = [0.0, 0.0, -50.0]\n"
+      "angular_velocity_rad_per_s = [0.0, 100.0, 0.0]\n"
+      "[[joint]]\nname = \"pin\"\nkind = \"revolute\"\nbetween = [\"rail left\", \"arm\"]\n"
+      "point_m = [12.4, 0.75, 0.0]\naxis = [0.0, 1.0, 0.0]\n"
+      "[[spring]]\nbetween = [\"rail left\", \"arm\"]\npoint_m = [13.6, 0.75, 0.0]\n"
+      "other_point_m = [12.9, 0.75, 0.0]\nstiffness_n_per_m = 2e7\nlength_m = 0.7\n";
+  const auto file = fresh_folder("rotor") / "scene.toml";
+  std::ofstream(file) << scene;
+  const auto run = simulation_of(read_any_scene(file, {}));
+  const Model& model = run->model();
+  std::vector<double> memory(static_cast<std::size_t>(state_doubles(model)));
+  Outputs outputs{};
+  double off = 0., largest = 0.;
+  for (std::int64_t n = 1; n <= model.steps; ++n) {
+    const State before = copied_state(model, run->state, memory.data());
+    REQUIRE((advance_frame(model, run->state, run->workspace, outputs) &
+             (Status::cap_reached | Status::nonfinite_state | Status::contact_ill_posed)) ==
+            Status::ok);
+    const State& after = run->state;
+    WheelContact first[kMaxWheels], last[kMaxWheels];
+    const double middle = .5 * model.scheme.dt;
+    find_vehicle_contacts(model, n, middle, {before.u, {before.u, before.v}}, first);
+    find_vehicle_contacts(model, n, middle, {after.u, {after.u, after.v}}, last);
+    for (ContactId i = 0; i < contact_count(model); ++i) {
+      const double depth = model.scheme.theta * last[i].penetration +
+                           (1. - model.scheme.theta) * first[i].penetration;
+      const double force = model.contact[i].law.hertz * std::pow(std::max(depth, 0.), 1.5);
+      off = std::max(off, std::fabs(force - after.contact_force[i]));
+      largest = std::max(largest, force);
+    }
+  }
+  CHECK(largest > 3e4);
+  CHECK(off < 5e-9 * largest);  // 7e-10; 3e-8 if W took the unsymmetric part too
 }
 
 TEST_CASE("a body hangs on rails that do not give way, beside a wheelset", "[beside_wheels]") {

@@ -106,6 +106,26 @@ TEST_CASE("a rod carries to the drive what pulls the second vehicle", "[coupler]
   }
 }
 
+TEST_CASE("a train that speeds up starts with the forces of its first step", "[coupler]") {
+  const std::string file =
+      "file=\"../vehicles/manchester_1.toml\",speed_table=[[0.0,60.0],[10.0,65.0]]";
+  const Words words{"vehicle=[{name=\"front\",start_m=40.0," + file +
+                        "},{name=\"rear\",start_m=14.0," + file + "}]",
+                    coupler(kRod), "step.dt_s=1e-4", "step.frame_s=1e-4", "step.duration_s=0.01"};
+  Simulation run(read_scene(shipped("manchester_straight"), words));
+  const Model& model = run.model();
+  Outputs start{}, first{};
+  publish_start(model, run.state, start);
+  static_cast<void>(advance_frame(model, run.state, run.workspace, first));
+  // The rod takes half a metre per second squared of the second car, and the drive that of both;
+  // the bogies follow on their springs.
+  const double car = .5 * 32000.;
+  CHECK(start.rod_tension[0] == Approx(car).epsilon(2e-2));
+  CHECK(start.drive_force[0] == Approx(2. * car).epsilon(2e-2));
+  CHECK(first.rod_tension[0] == Approx(start.rod_tension[0]).margin(1e-3 * car));
+  CHECK(first.drive_force[0] == Approx(start.drive_force[0]).margin(1e-3 * car));
+}
+
 TEST_CASE("a rod keeps its length to rounding, step by step", "[coupler]") {
   for (const std::string scheme : {"rho_inf=0.8", "rho_inf=1.0"}) {
     INFO(scheme);

@@ -63,6 +63,70 @@ TEST_CASE("an external wheel beside others presses as a load at its place does",
   }
 }
 
+TEST_CASE("the force of an external wheel holds over both stages of a step", "[external_beside]") {
+  const Changes words{"step.duration_s=0.05", "step.scheme=\"tr-bdf2\"", "step.dt_s=5e-5",
+                      "step.frame_s=5e-5"};
+  for (const char* scene : {"moving_load", "bogie_at_speed"}) {
+    INFO(scene);
+    Changes others = words;
+    if (std::string(scene) == "moving_load") others.push_back("load=[]");
+    others.push_back("condense.kind=\"full\"");
+    Simulation loaded(scene_of(scene, others,
+                               "load=[{name=\"e\",rail=\"left\",at=\"head\",force_z_n=-3e4,"
+                               "start_m=4.7}]")),
+        pressed(scene_of(scene, others, kWheel));
+    const Model& model = pressed.model();
+    REQUIRE(loaded.model().unknowns == model.unknowns);
+    REQUIRE(model.scheme.stage_fraction > 0.);
+    std::copy(loaded.state.numbers, loaded.state.numbers + 4 * model.unknowns,
+              pressed.state.numbers);
+    Outputs a{}, b{};
+    const double input[] = {4.7, 0., 0., 0., -3e4};
+    double most = 0., peak = 0.;
+    for (std::int64_t n = 1; n <= model.steps; ++n) {
+      static_cast<void>(advance_frame(loaded.model(), loaded.state, loaded.workspace, a));
+      static_cast<void>(advance_frame(model, input, pressed.state, pressed.workspace, b));
+      for (std::int32_t i = 0; i < model.line_unknowns; ++i) {
+        most = std::max(most, std::fabs(loaded.state.u[i] - pressed.state.u[i]));
+        peak = std::max(peak, std::fabs(loaded.state.u[i]));
+      }
+    }
+    CHECK(most < 1e-9 * peak);
+  }
+}
+
+TEST_CASE("an external wheel holds over the steps of a frame, and its response foretells it",
+          "[external_beside]") {
+  for (const char* scene : {"bogie_at_speed", "moving_load"})
+    for (const char* kind : {"full", "modal"}) {
+      INFO(scene << ' ' << kind);
+      const bool beside = std::string(scene) == "bogie_at_speed";
+      Changes words{"step.duration_s=0.04", "step.dt_s=1e-4",
+                    std::string("condense.kind=\"") + kind + "\""};
+      if (!beside) words.push_back("load=[]");
+      Changes four = words, one = words;
+      four.push_back("step.frame_s=4e-4");
+      one.push_back("step.frame_s=1e-4");
+      Simulation frames(scene_of(scene, four, kWheel)), steps(scene_of(scene, one, kWheel));
+      Outputs outputs{};
+      for (int n = 0; n < 100; ++n) {
+        const double input[] = {3.7 + .02 * n, 1e-3, 0., 5e3, -3e4 * (n % 7)};
+        double free[3], compliance[9];
+        static_cast<void>(external_response(frames.model(), input, frames.state, frames.workspace,
+                                            free, compliance));
+        for (int m = 0; m < 4; ++m)
+          static_cast<void>(
+              advance_frame(steps.model(), input, steps.state, steps.workspace, outputs));
+        static_cast<void>(
+            advance_frame(frames.model(), input, frames.state, frames.workspace, outputs));
+        REQUIRE(state_hash(frames.model(), frames.state) == state_hash(steps.model(), steps.state));
+        const double by_force = compliance[7] * input[3] + compliance[8] * input[4];
+        const double small = (beside ? 1e-3 : 1e-8) * std::fabs(by_force) + 1e-12;
+        CHECK(free[2] + by_force == Approx(outputs.external_displacement[0][2]).margin(small));
+      }
+    }
+}
+
 TEST_CASE("the response under an external wheel holds with all that is beside it",
           "[external_beside]") {
   struct Cell {

@@ -59,7 +59,7 @@ struct Push {
       u[i] = s.run.state.u[i] + s.model.scheme.dt * s.run.state.v[i];
     WheelContact contact[4];
     const Configuration at{u.data(), {s.run.state.u, s.run.state.v}};
-    find_contacts(s.model, s.model.wheelset[0], at, contact);
+    find_contacts(s.model, 0, at, contact);
     find_flanges(s.model, s.model.flange[0], at, contact + 2);
     for (int i = 0; i < 4; ++i) lateral[i] = contact[i].body_row[1];
   }
@@ -152,7 +152,7 @@ namespace {
 /// energy turned over, and the largest force of a flange.
 struct Balance {
   double rest, error, turned, flange;
-  ContactModel law;
+  ContactLaw law;
 };
 
 Balance balance(const std::string& name, const std::vector<std::string>& changes) {
@@ -161,7 +161,7 @@ Balance balance(const std::string& name, const std::vector<std::string>& changes
   single.steps_per_frame = 1;
   Outputs out{};
   EnergyAccount account(*run.packed(), single, run.state);
-  Balance found{0., 0., 0., 0., single.flange[0].contact};
+  Balance found{0., 0., 0., 0., single.contact[flange_contact(single, 0)].law};
   for (std::int64_t n = 0; n < single.steps; ++n) {
     static_cast<void>(advance_frame(single, run.state, run.workspace, out));
     account.follow(run.state);

@@ -103,8 +103,10 @@ struct Drop {
     }
     for (int i = 0; i < 2; ++i) {
       const double d = std::max(0., -outputs.contact_gap[i]), f = outputs.contact_force[i];
-      sum += .4 * w.hertz[0] * d * d * std::sqrt(d);
-      sum += .5 * f * f * residual_under(model(), rail_force(model(), w.load_point[i], w.start, f));
+      sum += .4 * model().contact[0].law.hertz * d * d * std::sqrt(d);
+      sum +=
+          .5 * f * f *
+          residual_under(model(), rail_force(model(), model().contact[i].load_point, w.start, f));
     }
     return sum;
   }

@@ -199,7 +199,7 @@ class DenseHouse {
   std::pair<long double, long double> law(std::size_t i, long double d, long double rate) const {
     if (!(d > 0.L)) return {0.L, 0.L};
     if (i < wheels()) {
-      const long double C = run_.model().vehicle_wheel[i].contact.hertz;
+      const long double C = run_.model().contact[i].law.hertz;
       return {C * d * std::sqrt(d), 1.5L * C * std::sqrt(d)};
     }
     const FixedPort& port = ports_[i - wheels()];

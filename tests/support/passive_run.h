@@ -67,13 +67,12 @@ class PassiveRun {
   StandingWheels wheels(const State& at, std::int64_t step) const {
     const double before = model_.form == Form::condensed ? .5 * dt_ : 0.;
     WheelContact contact[kMaxWheels];
-    for (std::int32_t v = 0; v < model_.vehicles; ++v)
-      find_vehicle_contacts(model_, model_.vehicle[v], step, before, {at.u, {at.u, at.v}}, contact);
+    find_vehicle_contacts(model_, step, before, {at.u, {at.u, at.v}}, contact);
     StandingWheels found;
     for (int i = 0; i < wheel_count(model_); ++i) {
       found.approach.push_back(contact[i].penetration);
       found.place.push_back(
-          {model_, load_point_of(model_, i), contact[i].row.element, contact[i].xi, 0.});
+          {model_, model_.contact[i].load_point, contact[i].row.element, contact[i].xi, 0.});
     }
     return found;
   }
@@ -91,7 +90,7 @@ class PassiveRun {
   double of_contacts(const StandingWheels& at, const double* force) const {
     double sum = 0.;
     for (std::size_t i = 0; i < at.place.size(); ++i) {
-      const ContactModel& law = vehicle_wheel(model_, static_cast<std::int32_t>(i)).contact;
+      const ContactLaw& law = model_.contact[i].law;
       const double w = moved(at, force, i), d = at.approach[i] - w, in = std::max(0., d);
       sum += law.hertz > 0. ? .4 * law.hertz * in * in * std::sqrt(in) : .5 * law.stiffness * d * d;
       sum += .5 * force[i] * w;
@@ -107,7 +106,7 @@ class PassiveRun {
       sum += m.kinetic + m.strain;
     }
     for (std::int32_t i = 0; i < model_.vehicles; ++i) {
-      const VehicleModel& v = model_.vehicle[i];
+      const SuspendedModel& v = model_.vehicle[i];
       const SuspendedEnergy own = suspended_energy(v, at);
       sum += own.kinetic + own.strain;
     }
@@ -144,7 +143,7 @@ class PassiveRun {
       sum += mean.dot(damping_[l] * mean);
     }
     for (std::int32_t i = 0; i < model_.vehicles; ++i) {
-      const VehicleModel& own = model_.vehicle[i];
+      const SuspendedModel& own = model_.vehicle[i];
       for (int j = 0; j < own.size; ++j)
         for (int k = 0; k < own.size; ++k) {
           const int a = own.first + j, b = own.first + k;
@@ -185,7 +184,7 @@ class PassiveRun {
       size += way.dot(sizes_[l] * all);
     }
     for (std::int32_t i = 0; i < model_.vehicles; ++i) {
-      const VehicleModel& v = model_.vehicle[i];
+      const SuspendedModel& v = model_.vehicle[i];
       for (int k = 0; k < v.size; ++k) {
         const double u0 = old_.u[v.first + k], u1 = run_.state.u[v.first + k];
         const double way = std::abs(u1 - u0), all = std::abs(u0) + std::abs(u1);

@@ -5,8 +5,10 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <set>
 #include <sstream>
 #include <string>
+#include <system_error>
 
 #include "support/wait.h"
 
@@ -18,12 +20,26 @@ inline std::string text_of(const std::filesystem::path& file) {
   return text.str();
 }
 
+/// Folders of the test cases, which go when the process that made them ends.
+struct Folders {
+  std::set<std::filesystem::path> made;
+  pid_t owner = getpid();
+
+  ~Folders() {
+    std::error_code ignored;
+    if (getpid() == owner)
+      for (const auto& folder : made) std::filesystem::remove_all(folder, ignored);
+  }
+};
+inline Folders folders;
+
 /// An empty folder for one test case.
 inline std::filesystem::path fresh_folder(const std::string& name) {
   auto folder = std::filesystem::temp_directory_path() /
                 ("railstep_" + std::to_string(getpid()) + "_" + name);
   std::filesystem::remove_all(folder);
   std::filesystem::create_directories(folder);
+  folders.made.insert(folder);
   return folder;
 }
 

@@ -27,7 +27,7 @@ double pressed(const State& state, int wheel) { return std::max(0., state.contac
 double small_change(const Model& model, const State& state) {
   double small = HUGE_VAL;
   for (int i = 0; i < model.vehicle_wheels; ++i) {
-    const ContactModel& contact = model.vehicle_wheel[i].contact;
+    const ContactLaw& contact = model.contact[vehicle_contact(model, i)].law;
     const double force = pressed(state, vehicle_contact(model, i));
     if (contact.hertz > 0. && force > 0.)
       small = std::min(small, 5e-3 * contact_depth(contact, force));
@@ -36,7 +36,7 @@ double small_change(const Model& model, const State& state) {
 }
 
 /// N/m of a wheel's contact; 0 where it stands free.
-double slope(const ContactModel& contact, double force) {
+double slope(const ContactLaw& contact, double force) {
   return contact.hertz > 0. ? 1.5 * std::cbrt(contact.hertz * contact.hertz * force)
                             : contact.stiffness;
 }
@@ -69,12 +69,12 @@ std::vector<Change> changes_of(const Model& model, const State& state) {
   for (int l = 0; model.form == Form::condensed && l < model.lines; ++l)
     add_modes(changes, model, small, model.line[l]);
   for (int i = 0; i < model.vehicles; ++i) {
-    const VehicleModel& vehicle = model.vehicle[i];
+    const SuspendedModel& vehicle = model.vehicle[i];
     add_motion(changes, model, small, vehicle.first, vehicle.first + vehicle.size);
   }
   for (int i = 0; i < model.vehicle_wheels; ++i) {
     const int wheel = vehicle_contact(model, i);
-    const double stiffness = slope(model.vehicle_wheel[i].contact, pressed(state, wheel));
+    const double stiffness = slope(model.contact[wheel].law, pressed(state, wheel));
     if (stiffness > 0.)
       changes.push_back({Eigen::Index{4} * model.unknowns + wheel, stiffness * small});
   }

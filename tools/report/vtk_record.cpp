@@ -105,9 +105,10 @@ void add_sleeper(const Track& track, const TrackMotion& motion, int seat, double
 
 /// A disc about an axle, and the force on the rail under it.
 void add_wheel(const Simulation& run, ContactId wheel, VtkMesh& mesh) {
-  const WheelsetModel& set = run.model().wheelset[wheelset_of(run.model(), wheel)];
+  const ContactModel& contact = run.model().contact[wheel];
+  const WheelsetModel& set = run.model().wheelset[contact.bodies];
   const double* p = run.state.u + set.first;
-  const int side = rail_of(run.model(), wheel);
+  const int side = contact.rail;
   const double x = set.start + p[0], y = run.model().rail_y[side];
   mesh.add_disc({x, y, set.rest_z}, set.radius, [&](double ahead, double beside, double up) {
     return std::array<double, 3>{-p[5] * (y + beside), p[1] + p[5] * ahead - p[3] * up,
@@ -124,7 +125,7 @@ void add_load(const Simulation& run, const LoadModel& load, VtkMesh& mesh) {
   const Model& model = run.model();
   const PlacedLoad at = place(model, load, run.state.steps);
   if (!at.on_rail) return;
-  const double down = deflection(model, at, {run.state.u, {run.state.u, run.state.v}});
+  const double down = motion(model, at.row, {run.state.u, {run.state.u, run.state.v}});
   const double in_section[3] = {at.place, 0., model.head_z[load.rail]};
   std::array<double, 3> head;
   to_track(model.cant[load.rail], in_section, head.data());

@@ -27,7 +27,7 @@ struct Standing {
   }
 };
 
-Standing stand(const Simulation& run, const VehicleModel& model, int rail,
+Standing stand(const Simulation& run, const SuspendedModel& model, int rail,
                const DrawnVehicle& drawn) {
   const Model& m = run.model();
   return {drawn.what,
@@ -91,10 +91,11 @@ DrawnVehicle drawn_vehicle(const VehicleScene& scene) {
 
 void add_vehicle(const Simulation& run, int vehicle, const DrawnVehicle& drawn, VtkMesh& mesh) {
   const Vehicle& what = drawn.what;
-  const VehicleModel& model = run.model().vehicle[vehicle];
-  const VehicleWheel* wheel = run.model().vehicle_wheel + model.first_wheel;
-  const double* force = run.state.contact_force + 2 * run.model().wheelsets + model.first_wheel;
-  const Standing at = stand(run, model, wheel->rail, drawn);
+  const SuspendedModel& model = run.model().vehicle[vehicle];
+  ContactId first = tread_count(run.model());
+  while (run.model().contact[first].bodies != vehicle) ++first;
+  const double* force = run.state.contact_force + first;
+  const Standing at = stand(run, model, run.model().contact[first].rail, drawn);
   for (const Vehicle::Wheel& own : what.wheels) add_wheel(at, own, *force++, mesh);
   for (std::size_t body = 0; body < what.bodies.size(); ++body)
     if (const std::size_t level = level_of(what, body); level > 0) add_block(at, body, level, mesh);

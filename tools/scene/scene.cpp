@@ -344,7 +344,6 @@ void read_traffic(const Table& root, Scene& scene) {
   root.attempt([&] { scene.external_wheels = read_external_wheels(root, scene); });
   root.attempt([&] { scene.irregularity = read_irregularity(root, scene); });
   root.stop_if_refused();  // the readers below ask what runs on the track
-  check_external_wheels(root, scene);
   root.attempt([&] { scene.defects = read_defects(root, scene); });
   const std::optional<Table> output = root.table_if("output");
   scene.trace_supports = output && output->boolean("supports", false);

@@ -54,7 +54,6 @@ void read_scheme(const Table& step, double rho_inf, bool of_bodies, StepScene& r
 void read_contact(const Table& root, Scene& scene);
 /// Refuses scenes with external wheels and something nonlinear, frames of several steps, or a
 /// scheme of two stages.
-void check_external_wheels(const Table& root, const Scene& scene);
 /// Refuses a run that is not a whole number of frames.
 void check_frames(const Table& step, const StepScene& read);
 /// Where a track's nodes lie in its section: key reference_line, the centroid by default.

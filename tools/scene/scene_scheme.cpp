@@ -51,21 +51,4 @@ void read_contact(const Table& root, Scene& scene) {
              "\"craig-bampton\" or \"krylov\"");
 }
 
-void check_external_wheels(const Table& root, const Scene& scene) {
-  if (scene.external_wheels.empty()) return;
-  if (!scene.step) return;
-  const Table step = root.table("step");
-  if (scene.step->scheme == TimeScheme::tr_bdf2 && !scene.condense.kind)
-    step.refuse("scheme", "E-STEP-04",
-                "scheme = \"tr-bdf2\" has two stages, but an [[external_wheel]] presses "
-                "at the ends of steps; expected \"generalised-alpha\", "
-                "\"backward-euler\", \"newmark\" or \"hht\"");
-  if (scene.step->steps_per_frame != 1)
-    step.refuse(
-        "frame_s", "E-STEP-05",
-        fmt::format("an [[external_wheel]] needs a frame of one step, but this frame has {}; "
-                    "expected frame_s = dt_s",
-                    scene.step->steps_per_frame));
-}
-
 }  // namespace railstep

@@ -96,7 +96,7 @@ double hertz_constant(double wheel_radius, double crown_radius, double young, do
   return hertz_contact(wheel_radius, crown_radius, young, poisson, kAnyLoad).constant;
 }
 
-double contact_depth(const ContactModel& contact, double force) {
+double contact_depth(const ContactLaw& contact, double force) {
   return contact.hertz > 0. ? std::pow(force / contact.hertz, 2. / 3.) : force / contact.stiffness;
 }
 

@@ -38,6 +38,6 @@ double hertz_constant(double wheel_radius, double crown_radius, double young, do
 
 /// Penetration of a contact under a force >= 0, m: by Hertz's law, or a spring's. The step has its
 /// own root (online/contact/ports.cpp), which needs no C library.
-double contact_depth(const ContactModel& contact, double force);
+double contact_depth(const ContactLaw& contact, double force);
 
 }  // namespace railstep

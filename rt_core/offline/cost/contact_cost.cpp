@@ -36,12 +36,16 @@ Cost located_pair(const Model& model) {
 Cost vehicles_cost(const Model& model, std::int64_t contacts) {
   Cost sum{};
   for (std::int32_t v = 0; v < model.vehicles; ++v) {
-    const std::int64_t n = model.vehicle[v].size, wheels = model.vehicle[v].wheels;
+    const std::int64_t n = model.vehicle[v].size;
+    sum = sum + work(6 * n * n + 20 * n, 3 * n * n + 14 * n);
+  }
+  for (ContactId i = tread_count(model); i < wheel_count(model); ++i) {
+    const std::int64_t n = bodies_of(model, i).size;
     const Cost law = work(150 + 6 * n, 100 + 4 * n) + contacts * kPairLookUp;
     const Cost own = work(200 + 8 * n, 80 + 6 * n) + 2 * irregularity_cost(model);
-    sum = sum + work(6 * n * n + 20 * n, 3 * n * n + 14 * n) + wheels * (law + own);
+    sum = sum + law + own;
     for (std::int32_t l = 0; l < model.lines; ++l)
-      sum = sum + 3 * wheels * line_cost(model, model.line[l]).wheel_row;
+      sum = sum + 3 * line_cost(model, model.line[l]).wheel_row;
   }
   return sum;
 }
@@ -54,10 +58,11 @@ Cost tables_cost(const Model& model) {
           forces_cost(model.wheelset[w].force, model.wheelset[w].forces);
   }
   for (std::int32_t v = 0; v < model.vehicles; ++v) {
-    const VehicleModel& own = model.vehicle[v];
-    sum = sum + (6 + 8 * own.wheels) * table_cost(own.travel.rows) +
-          forces_cost(own.force, own.forces);
+    const SuspendedModel& own = model.vehicle[v];
+    sum = sum + 6 * table_cost(own.travel.rows) + forces_cost(own.force, own.forces);
   }
+  for (ContactId i = tread_count(model); i < wheel_count(model); ++i)
+    sum = sum + 8 * table_cost(bodies_of(model, i).travel.rows);
   return sum;
 }
 
@@ -92,8 +97,8 @@ Cost coupled_cost(const Model& model, std::int64_t contacts) {
     if (model.wheelset[i].guide == Guide::augmented_lagrangian &&
         model.wheelset[i].cap > iterations)
       iterations = model.wheelset[i].cap;
-  for (std::int32_t v = 0; v < model.vehicles; ++v)
-    lift += 2 * std::int64_t{model.vehicle[v].size} * model.vehicle[v].wheels;
+  for (ContactId i = tread_count(model); i < wheel_count(model); ++i)
+    lift += 2 * std::int64_t{bodies_of(model, i).size};
   const std::int64_t ports = contacts + model.fixed.count;
   const Cost solve = wheel_seat_row_count(model) > 0 ? coupled_runners_cost(model)
                                                      : ports_cost(ports, model.scheme.mean != 0);

@@ -107,7 +107,7 @@ Cost loads_cost(const Model& model) {
 std::int64_t bases_on(const Model& model, const LineModel& line) {
   std::int64_t count = 0;
   for (std::int32_t i = 0; i < contact_count(model); ++i)
-    if (line.rail_factor[rail_of(model, i)] != 0.) ++count;
+    if (line.rail_factor[model.contact[i].rail] != 0.) ++count;
   const std::int64_t seats = wheel_seat_row_count(model) / 2;  // of a rail
   if (seats > 0 && seats_mirror(model))
     return count + seats + (has_levers(model) ? 2 * std::int64_t{model.runner_wheelsets} : 0);

@@ -16,7 +16,7 @@ Cost ports_cost(std::int64_t n, bool means) {
   const Cost halving = work(150 * n, 20 * n) + look + law + depth;
   const Cost iteration = matrix + factor + back + next + look + 2 * law + halvings * halving;
   const Cost lone = means ? work(190 * n, 4 * n) : Cost{};  // three steps of each port alone
-  return lone + work(2 * n * n + 60 * n, n * n + 8 * n) + kPortSweeps * iteration +
+  return lone + work(4 * n * n + 60 * n, 2 * n * n + 8 * n) + kPortSweeps * iteration +
          2 * (look + law);
 }
 

@@ -16,7 +16,7 @@ int ports_of(const Model& model, StandingContacts& c, RailForce* acting) {
     acting[i] = {model, model.load[i].load_point, c.load[i].row.element, c.load[i].xi,
                  c.load[i].force};
   for (int i = 0; i < c.contacts; ++i)
-    acting[c.loads + i] = {model, load_point_of(model, i), c.contact[i].row.element,
+    acting[c.loads + i] = {model, model.contact[i].load_point, c.contact[i].row.element,
                            c.contact[i].xi, 0.};
   return c.loads + c.contacts;
 }
@@ -29,22 +29,20 @@ bool stands(const WheelContact& at) { return at.on_rail || at.on_ground; }
 /// A linear contact is bilateral. Its force is known, and contains the damper's part, which the
 /// penetration does not show.
 bool is_linear(const Model& model, int wheel) {
-  return !is_of_wheelset(model, wheel) && vehicle_wheel(model, wheel).contact.hertz == 0.;
+  return is_upright(model, wheel) && model.contact[wheel].law.hertz == 0.;
 }
 /// Whether residual flexibility changes the depth of a contact.
 bool takes_residual(const Model& model, int wheel) {
   return !is_flange(model, wheel) && !is_linear(model, wheel);
 }
 double hertz_of(const Model& model, int wheel) {
-  if (!takes_residual(model, wheel)) return 1.;  // not used: such a port stays open
-  return is_of_wheelset(model, wheel)
-             ? model.wheelset[wheelset_of(model, wheel)].hertz[rail_of(model, wheel)]
-             : vehicle_wheel(model, wheel).contact.hertz;
+  return takes_residual(model, wheel) ? model.contact[wheel].law.hertz
+                                      : 1.;  // not used: such a port stays open
 }
 
 /// Energy in a linear contact. Without a damper it follows from the force, which is more accurate
 /// than the small penetration of a stiff contact.
-double linear_energy(const ContactModel& contact, double force, double depth) {
+double linear_energy(const ContactLaw& contact, double force, double depth) {
   return contact.damping == 0. ? .5 * force * force / contact.stiffness
                                : .5 * contact.stiffness * depth * depth;
 }
@@ -86,7 +84,7 @@ void solve_forces(const Model& model, StandingContacts& c, RailForce* acting, in
   }
 }
 
-double flange_energy(const ContactModel& contact, double depth) {
+double flange_energy(const ContactLaw& contact, double depth) {
   const double d = std::max(depth, 0.);
   return contact.hertz > 0. ? .4 * contact.hertz * d * d * std::sqrt(d)
                             : .5 * contact.stiffness * d * d;
@@ -97,8 +95,8 @@ void find_depths(const Model& model, const State& state, StandingContacts& c) {
   for (int i = 0; i < c.contacts; ++i) {
     c.depth[i] = c.approach[i] + c.moved[c.loads + i];
     if (is_linear(model, i))
-      c.hertz += linear_energy(vehicle_wheel(model, i).contact, state.contact_force[i], c.depth[i]);
-    if (is_flange(model, i)) c.hertz += flange_energy(flange_of(model, i).contact, c.depth[i]);
+      c.hertz += linear_energy(model.contact[i].law, state.contact_force[i], c.depth[i]);
+    if (is_flange(model, i)) c.hertz += flange_energy(model.contact[i].law, c.depth[i]);
   }
 }
 
@@ -111,12 +109,11 @@ StandingContacts standing_contacts(const Model& model, const State& state) {
   const Configuration at{state.u, {state.u, state.v}, track_offset(model, state.steps)};
   for (int i = 0; i < c.loads; ++i) c.load[i] = place(model, model.load[i], state.steps);
   for (std::int32_t b = 0; b < model.wheelsets; ++b)
-    find_contacts(model, model.wheelset[b], at, c.contact + tread_of(b, 0));
+    find_contacts(model, b, at, c.contact + tread_of(b, 0));
   for (std::int32_t f = 0; f < model.flanges; ++f)
     find_flanges(model, model.flange[f], at,
                  c.contact + flange_contact(model, flange_number(f, 0)));
-  for (std::int32_t v = 0; v < model.vehicles; ++v)
-    find_vehicle_contacts(model, model.vehicle[v], state.steps, 0., at, c.contact);
+  find_vehicle_contacts(model, state.steps, 0., at, c.contact);
   for (int i = 0; i < c.contacts; ++i)
     c.approach[i] = stands(c.contact[i]) ? c.contact[i].penetration : 0.;
   RailForce acting[kMaxRailForces];
@@ -142,8 +139,7 @@ double contact_dissipation(const Model& model, const StandingContacts& before,
   double sum = 0.;
   for (ContactId i = tread_count(model); i < after.contacts; ++i) {
     const bool one_sided = is_flange(model, i);
-    const ContactModel& contact =
-        one_sided ? flange_of(model, i).contact : vehicle_wheel(model, i).contact;
+    const ContactLaw& contact = model.contact[i].law;
     if (contact.damping == 0.) continue;
     const double d0 = before.depth[i], d1 = after.depth[i];
     const auto spring = [&](double d) {

@@ -19,8 +19,10 @@ namespace railstep {
 namespace {
 
 /// Force of a wheelset's tables and inputs in one direction at a state, N.
-double outer_force(const Model& model, const WheelsetModel& w, int direction, const State& at) {
-  const double time = static_cast<double>(at.steps) * model.scheme.dt;
+/// @param before  steps before the state's
+double outer_force(const Model& model, const WheelsetModel& w, int direction, const State& at,
+                   double before = 0.) {
+  const double time = (static_cast<double>(at.steps) - before) * model.scheme.dt;
   double sum = 0.;
   for (std::int32_t i = 0; i < w.forces; ++i)
     if (w.force[i].direction == direction) sum += force_at(w.force[i], time, at.input);
@@ -28,10 +30,12 @@ double outer_force(const Model& model, const WheelsetModel& w, int direction, co
 }
 
 /// Forces of the rail on a vehicle's wheels, over its coordinates.
-Eigen::VectorXd wheel_forces_on(const Model& model, const VehicleModel& v, const State& at) {
-  const double* const force = at.contact_force + vehicle_contact(model, v.first_wheel);
-  return Eigen::Map<const Eigen::MatrixXd>(v.row, v.size, v.wheels) *
-         Eigen::Map<const Eigen::VectorXd>(force, v.wheels);
+Eigen::VectorXd wheel_forces_on(const Model& model, const SuspendedModel& v, const State& at) {
+  Eigen::VectorXd sum = Eigen::VectorXd::Zero(v.size);
+  for (ContactId i = tread_count(model); i < wheel_count(model); ++i)
+    if (&bodies_of(model, i) == &v)
+      sum += Eigen::Map<const Eigen::VectorXd>(model.contact[i].row, v.size) * at.contact_force[i];
+  return sum;
 }
 
 }  // namespace
@@ -102,7 +106,7 @@ void EnergyAccount::follow(const State& state) {
   if (wheel_count(model_) > 0) add_contacts(now);
   for (std::int32_t b = 0; b < model_.wheelsets; ++b) add_wheelset(now, b);
   for (std::int32_t j = 0; j < model_.fixed.count; ++j) add_port(now, j);
-  for (std::int32_t b = 0; b < model_.vehicles; ++b) add_vehicle(now, b);
+  if (model_.vehicles > 0) add_vehicles(now);
   for (std::size_t i = 0; i < now.runners.size(); ++i) add_runner(now, i);
   if (first_ && model_.form == Form::banded) add_start(now);
   last_ = std::move(now);  // its views stay valid: a vector's memory moves along
@@ -157,7 +161,7 @@ void EnergyAccount::add_loads(const Standing& now) {
   for (std::int32_t i = 0; i < model_.loads; ++i)
     for (const Standing* at : {static_cast<const Standing*>(&last_), &now}) {
       const PlacedLoad& load = at->contacts.load[i];
-      if (load.on_rail) flow_.loads += .5 * load.force * deflection(model_, load, moved);
+      if (load.on_rail) flow_.loads += .5 * load.force * motion(model_, load.row, moved);
     }
   flow_.outside += external_work(model_, last_.external, now.external, moved);
   flow_.carriers += residual_work(last_.contacts, now.contacts);
@@ -171,7 +175,7 @@ void EnergyAccount::add_contacts(const Standing& now) {
   for (int i = 0; i < after.contacts; ++i) {
     mean[i] = wheel_force(now, i);
     const bool lost =
-        is_of_wheelset(model_, i) && !(before.contact[i].on_rail && after.contact[i].on_rail);
+        !is_upright(model_, i) && !(before.contact[i].on_rail && after.contact[i].on_rail);
     if (!lost) sum += mean[i] * (after.approach[i] - before.approach[i]);
   }
   const double damped = contact_dissipation(model_, before, after, mean);
@@ -215,8 +219,8 @@ double EnergyAccount::passage_work(const Standing& now, std::int32_t b) const {
         u.data(), {at.state.u, at.state.v}, track_offset(model_, now.state.steps)};
     const WheelsetContacts own = contacts_of(model_, b);
     WheelContact moved[4];
-    find_contacts(model_, w, moved_along, moved);
-    if (own.count > 2) find_flanges(model_, flange_of(model_, own.at[2]), moved_along, moved + 2);
+    find_contacts(model_, b, moved_along, moved);
+    if (own.pair >= 0) find_flanges(model_, model_.flange[own.pair], moved_along, moved + 2);
     for (int n = 0; n < own.count; ++n) {
       const ContactId i = own.at[n];
       if (!moved[n].on_rail || !at.contacts.contact[i].on_rail) continue;
@@ -227,18 +231,16 @@ double EnergyAccount::passage_work(const Standing& now, std::int32_t b) const {
   return sum;
 }
 
-double EnergyAccount::vehicle_passage(const Standing& now, std::int32_t b) const {
-  const VehicleModel& v = model_.vehicle[b];
+double EnergyAccount::vehicle_passage(const Standing& now) const {
   double sum = 0.;
   for (const bool later : {false, true}) {
     const Standing& at = later ? now : last_;
     const std::int64_t step = now.state.steps;
     WheelContact moved[kMaxWheels];
-    find_vehicle_contacts(model_, v, step, later ? model_.scheme.dt : 0.,
+    find_vehicle_contacts(model_, step, later ? model_.scheme.dt : 0.,
                           {at.state.u, {at.state.u, at.state.v}, track_offset(model_, step)},
                           moved);
-    for (int k = 0; k < v.wheels; ++k) {
-      const ContactId i = vehicle_contact(model_, v.first_wheel + k);
+    for (ContactId i = tread_count(model_); i < wheel_count(model_); ++i) {
       const double change = moved[i].penetration - at.contacts.approach[i];
       sum += .5 * wheel_force(now, i) * (later ? -change : change);
     }
@@ -253,9 +255,10 @@ void EnergyAccount::add_suspended(const SuspendedWork& work) {
   flow_.loss += work.loss;
 }
 
-void EnergyAccount::add_vehicle(const Standing& now, std::int32_t b) {
-  add_suspended(suspended_work(model_, model_.vehicle[b], last_.state, now.state));
-  flow_.guides += vehicle_passage(now, b);
+void EnergyAccount::add_vehicles(const Standing& now) {
+  for (std::int32_t b = 0; b < model_.vehicles; ++b)
+    add_suspended(suspended_work(model_, model_.vehicle[b], last_.state, now.state));
+  flow_.guides += vehicle_passage(now);
 }
 
 void EnergyAccount::add_runner(const Standing& now, std::size_t i) {
@@ -269,11 +272,12 @@ void EnergyAccount::add_runner(const Standing& now, std::size_t i) {
 double EnergyAccount::guide_work(const Standing& now, std::int32_t b) const {
   const WheelsetModel& w = model_.wheelset[b];
   const int x = w.first;
-  const double f0 = outer_force(model_, w, 0, last_.state);
-  const double f1 = outer_force(model_, w, 0, now.state);
   const double du = now.state.u[x] - last_.state.u[x], dv = now.state.v[x] - last_.state.v[x];
   const bool held = model_.form == Form::condensed;
-  const double sum = passage_work(now, b) - (held ? f1 : .5 * (f0 + f1)) * du;
+  const double force =
+      held ? outer_force(model_, w, 0, now.state, .5)
+           : .5 * (outer_force(model_, w, 0, last_.state) + outer_force(model_, w, 0, now.state));
+  const double sum = passage_work(now, b) - force * du;
   if (is_projected(w.guide)) return sum + .5 * w.mass[0] * dv * (last_.state.v[x] + now.state.v[x]);
   const double g = held ? now.state.g[x] : .5 * (last_.state.g[x] + now.state.g[x]);
   return sum + w.mass[0] * g * du;

@@ -104,9 +104,9 @@ class EnergyAccount {
   void add_port(const Standing& now, std::int32_t j);
   void add_wheelset(const Standing& now, std::int32_t b);
   void add_suspended(const SuspendedWork& work);
-  void add_vehicle(const Standing& now, std::int32_t b);
+  void add_vehicles(const Standing& now);
   void add_runner(const Standing& now, std::size_t i);
-  double vehicle_passage(const Standing& now, std::int32_t b) const;
+  double vehicle_passage(const Standing& now) const;
   double wheel_force(const Standing& now, int wheel) const;
   double passage_work(const Standing& now, std::int32_t b) const;
   double guide_work(const Standing& now, std::int32_t b) const;

@@ -15,10 +15,12 @@ struct BodiesMaps {
         stiffness(b.stiffness, b.size, b.size) {}
 };
 
-/// Forces of tables and inputs, along the coordinates.
-Eigen::VectorXd forces_on(const Model& model, const SuspendedModel& bodies, const State& at) {
+/// Forces of tables and inputs, along the coordinates. @param before  steps before the state's
+Eigen::VectorXd forces_on(const Model& model, const SuspendedModel& bodies, const State& at,
+                          double before = 0.) {
   Eigen::VectorXd sum = Eigen::VectorXd::Zero(bodies.size);
-  add_forces(bodies, static_cast<double>(at.steps) * model.scheme.dt, at.input, sum.data());
+  const double time = (static_cast<double>(at.steps) - before) * model.scheme.dt;
+  add_forces(bodies, time, at.input, sum.data());
   return sum;
 }
 
@@ -40,7 +42,7 @@ SuspendedWork suspended_work(const Model& model, const SuspendedModel& bodies, c
   SuspendedWork work{m.rest.dot(du), .5 * (f0 + f1).dot(du), 0., 0.};
   if (model.form == Form::condensed) {
     work.dissipated = du.dot(m.damping * du) / dt;
-    work.loss = .5 * (f0 - f1).dot(du);
+    work.loss = (.5 * (f0 + f1) - forces_on(model, bodies, after, .5)).dot(du);
     return work;
   }
   const Eigen::VectorXd v = .5 * (v0 + v1);

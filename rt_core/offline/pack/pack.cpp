@@ -88,6 +88,17 @@ std::int32_t PackedModel::load_point_at(const LoadPoint& point) {
   return static_cast<std::int32_t>(load_points_.size()) - 1;
 }
 
+/// A new contact under a number, which those from it on give up.
+ContactModel& PackedModel::insert_contact(ContactId at) {
+  if (contacts_ == kMaxWheels)
+    refuse("E-PACK-16", "there are more wheels and flanges than a model takes; expected at most " +
+                            std::to_string(kMaxWheels));
+  ContactModel* const place = model_.contact + at;
+  std::copy_backward(place, model_.contact + contacts_, model_.contact + contacts_ + 1);
+  ++contacts_;
+  return *place = {};
+}
+
 /// The load point of a wheel on a rail at rest.
 std::int32_t PackedModel::load_point_of_wheel(int rail) {
   const CrownTop top = crown_top(model_.cant[rail], model_.head_z[rail], model_.crown_radius[rail]);
@@ -253,14 +264,6 @@ void PackedModel::add_external(const Track& track, const ExternalWheel& wheel) {
       refuse("E-PACK-25",
              "external wheels run on truncated damped modes, which do not know the velocity under "
              "a wheel; expected full order, or another condense.kind than \"complex-modes\"");
-  if (model_.steps_per_frame != 1)
-    refuse("E-PACK-26", "a frame has " + std::to_string(model_.steps_per_frame) +
-                            " steps, but external wheels need a frame of one step; expected "
-                            "step.frame_s = step.dt_s");
-  if (model_.scheme.stage_fraction > 0.)
-    refuse("E-PACK-27",
-           "external wheels press at the ends of steps, but the scheme has two stages; expected "
-           "another step.scheme than \"tr-bdf2\"");
   constexpr double kFar = 1e9;  // m
   const std::int32_t input = model_.inputs;
   std::vector<double> limits(kExternalInputs, wheel.limit);

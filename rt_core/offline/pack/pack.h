@@ -304,11 +304,13 @@ class PackedModel {
   void clip(int points, std::vector<double>& under);
   std::int32_t load_point_at(const LoadPoint& point);
   std::int32_t load_point_of_wheel(int rail);
+  ContactModel& insert_contact(ContactId at);
 
   Model model_{};
   std::vector<PackedLine> lines_;
   std::vector<LoadPoint> load_points_;
   std::vector<PackedRunner> runners_;
+  std::int32_t contacts_ = 0;
   double clipped_ = 0.;
   Elements met_{};            // elements that the traffic visits (ring), else all
   std::vector<bool> is_met_;  // each element; between parts of the traffic a ring has others

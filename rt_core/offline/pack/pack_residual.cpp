@@ -20,12 +20,8 @@ std::vector<std::vector<double>> places_of(const Model& model, std::size_t load_
     places[static_cast<std::size_t>(load_point)].push_back(place);
   };
   for (std::int32_t i = 0; i < model.loads; ++i) add(model.load[i].load_point, model.load[i].start);
-  for (ContactId i = 0; i < tread_count(model); ++i)
-    add(load_point_of(model, i), model.wheelset[wheelset_of(model, i)].start);
-  for (std::int32_t i = 0; i < model.vehicle_wheels; ++i) {
-    const VehicleWheel& wheel = model.vehicle_wheel[i];
-    add(wheel.load_point, model.vehicle[wheel.vehicle].start + wheel.place);
-  }
+  for (ContactId i = 0; i < wheel_count(model); ++i)
+    add(model.contact[i].load_point, place_of(model, i));
   for (std::int32_t i = 0; i < model.external_wheels; ++i)
     add(model.external_wheel[i].load_point, 0.);  // their places are not known in advance
   return places;
@@ -127,7 +123,7 @@ void PackedModel::clip(int points, std::vector<double>& under) {
   const StepCompliance compliance(model_, lines_);
   const std::size_t places = under.size() / load_points_.size();
   for (std::int32_t wheel = 0; wheel < wheel_count(model_); ++wheel) {
-    const auto point = static_cast<std::size_t>(load_point_of(model_, wheel));
+    const auto point = static_cast<std::size_t>(model_.contact[wheel].load_point);
     const std::vector<double> lines = compliance.table(load_points_[point], points);
     for (std::size_t i = 0; i < places; ++i) {
       double& value = under[point * places + i];

@@ -12,8 +12,8 @@ namespace railstep {
 
 namespace {
 
-ContactModel contact_of(const RunningVehicle& vehicle, double radius, const Railhead& head,
-                        const Material& material) {
+ContactLaw contact_of(const RunningVehicle& vehicle, double radius, const Railhead& head,
+                      const Material& material) {
   switch (vehicle.contact) {
     case WheelContactKind::linear:
       if (!(vehicle.stiffness > 0.) || !(vehicle.damping >= 0.))
@@ -78,39 +78,34 @@ void PackedModel::add_vehicle(const Track& track, const RunningVehicle& vehicle,
                             std::to_string(kMaxVehicles));
   const VehicleMatrices m = vehicle_matrices(vehicle.vehicle, vehicle.gravity);
   const auto n = static_cast<std::int32_t>(m.mass.rows());
-  const auto wheels = static_cast<std::int32_t>(m.wheels.rows());
   if (n > kMaxVehicleUnknowns)
     refuse("E-PACK-41", "a vehicle has " + std::to_string(n) + " coordinates; expected at most " +
                             std::to_string(kMaxVehicleUnknowns));
-  if (contact_count(model_) + wheels > kMaxWheels)
-    refuse("E-PACK-16", "there are more wheels and flanges than a model takes; expected at most " +
-                            std::to_string(kMaxWheels));
   if (!vehicle.tread.empty() && vehicle.tread.size() != vehicle.vehicle.wheels.size())
     refuse("E-PACK-43", "a vehicle has " + std::to_string(vehicle.tread.size()) +
                             " treads; expected none or " +
                             std::to_string(vehicle.vehicle.wheels.size()) + ", one for each wheel");
   const auto rail = static_cast<std::size_t>(vehicle.rail);
-  VehicleModel& packed = model_.vehicle[model_.vehicles];
-  packed.first_wheel = model_.vehicle_wheels;
-  packed.wheels = wheels;
+  SuspendedModel& packed = model_.vehicle[model_.vehicles];
   packed.start = model_.endless.origin + vehicle.start;
   packed.travel = keep_travel(vehicle.speed, vehicle.speeds);
   const SuspendedResponse step =
       add_suspended({m.mass.diagonal(), -m.weight, m.damping, m.stiffness, Eigen::MatrixXd(n, 0)},
                     vehicle.forces, packed);
-  const Eigen::MatrixXd response = step.inverse * m.wheels.transpose();
-  const Eigen::MatrixXd compliance = m.wheels * response;
-  packed.row = keep(column_by_column(m.wheels.transpose()));
-  packed.response = keep(column_by_column(response));
-  packed.compliance = keep(column_by_column(.5 * (compliance + compliance.transpose())));
+  const Eigen::MatrixXd moved = step.inverse * m.wheels.transpose();
   for (std::size_t i = 0; i < vehicle.vehicle.wheels.size(); ++i) {
     const Vehicle::Wheel& wheel = vehicle.vehicle.wheels[i];
-    VehicleWheel& own = model_.vehicle_wheel[model_.vehicle_wheels++];
-    own.vehicle = model_.vehicles;
+    const auto row = static_cast<Eigen::Index>(i);
+    ContactModel& own = insert_contact(wheel_count(model_));
+    ++model_.vehicle_wheels;
+    own.kind = ContactKind::wheel;
+    own.bodies = model_.vehicles;
     own.rail = vehicle.rail;
     own.place = wheel.place;
-    own.contact = contact_of(vehicle, wheel.radius, heads[rail], track.bar(vehicle.rail).material);
+    own.law = contact_of(vehicle, wheel.radius, heads[rail], track.bar(vehicle.rail).material);
     own.load_point = load_point_of_wheel(vehicle.rail);
+    own.row = keep(column_by_column(m.wheels.row(row)));
+    own.moved = keep(column_by_column(moved.col(row)));
     if (!vehicle.tread.empty()) own.tread = keep(vehicle.tread[i]);
   }
   ++model_.vehicles;

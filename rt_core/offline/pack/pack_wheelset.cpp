@@ -44,7 +44,8 @@ void PackedModel::add_wheelset(const Track& track, const Wheelset& wheelset,
       refuse("E-PACK-12",
              "the mass, an inertia or the radius of a wheelset is not above 0; expected numbers "
              "above 0");
-  WheelsetModel& packed = model_.wheelset[model_.wheelsets++];
+  const std::int32_t number = model_.wheelsets;
+  WheelsetModel& packed = model_.wheelset[number];
   add_suspended(matrices_of(wheelset, model_.scheme), wheelset.forces, packed, "wheelset");
   packed.radius = wheelset.radius;
   packed.tread_half_width = wheelset.tread_half_width;
@@ -53,18 +54,20 @@ void PackedModel::add_wheelset(const Track& track, const Wheelset& wheelset,
   packed.rest_z =
       crown_top(model_.cant[0], heads[0].top_z, heads[0].crown_radius).height + wheelset.radius;
   for (const int rail : {0, 1}) {
-    const Railhead& head = heads[static_cast<std::size_t>(rail)];
+    const auto side = static_cast<std::size_t>(rail);
     const Material material = track.bar(rail).material;
-    packed.hertz[rail] =
-        hertz_constant(wheelset.radius, head.crown_radius, material.young, material.poisson);
-    packed.load_point[rail] = load_point_of_wheel(rail);
+    ContactModel& tread = insert_contact(tread_of(number, rail));
+    tread = {ContactKind::tread,         number, rail,    {},     load_point_of_wheel(rail),
+             keep(wheelset.tread[side]), 0.,     nullptr, nullptr};
+    tread.law.hertz =
+        hertz_constant(wheelset.radius, heads[side].crown_radius, material.young, material.poisson);
   }
+  ++model_.wheelsets;
   packed.guide = wheelset.guide;
   packed.cap = wheelset.cap;
   packed.tolerance = wheelset.tolerance;
   packed.alpha = wheelset.alpha;
   packed.beta = wheelset.beta;
-  for (const std::size_t rail : {0u, 1u}) packed.tread[rail] = keep(wheelset.tread[rail]);
   if (wheelset.flange) add_flange(track, wheelset, heads);
 }
 
@@ -83,24 +86,22 @@ SectionPoint gauge_face(const Cant& cant, const Railhead& head, double y) {
 void PackedModel::add_flange(const Track& track, const Wheelset& wheelset,
                              const std::array<Railhead, 2>& heads) {
   const Flange& flange = *wheelset.flange;
-  FlangeModel& packed = model_.flange[model_.flanges++];
-  if (contact_count(model_) > kMaxWheels)
-    refuse("E-PACK-16", "there are more wheels and flanges than a model takes; expected at most " +
-                            std::to_string(kMaxWheels));
+  FlangeModel& packed = model_.flange[model_.flanges];
   packed.wheelset = model_.wheelsets - 1;
   packed.normal[0] = -std::sin(flange.angle);
   packed.normal[1] = std::cos(flange.angle);
   packed.tip = -(wheelset.radius + flange.height);
-  packed.contact = {0., flange.stiffness, flange.damping};
+  ContactLaw law{0., flange.stiffness, flange.damping};
   const Material material = track.bar(0).material;
   const double around = (wheelset.radius + kGaugeDepth) / std::cos(flange.angle);
   if (flange.corner_radius > 0.)
-    packed.contact = {
-        hertz_constant(around, flange.corner_radius, material.young, material.poisson), 0., 0.};
+    law = {hertz_constant(around, flange.corner_radius, material.young, material.poisson), 0., 0.};
   for (const int rail : {0, 1}) {
     const Railhead& head = heads[static_cast<std::size_t>(rail)];
     const double inward = rail == 0 ? -1. : 1.;
     const SectionPoint gauge = gauge_face(model_.cant[rail], head, inward * head.gauge_half_width);
+    insert_contact(contact_count(model_) + rail) = {
+        ContactKind::flange, packed.wheelset, rail, law, kNoLoadPoint, {}, 0., nullptr, nullptr};
     packed.gauge[rail][0] = gauge.y;
     packed.gauge[rail][1] = gauge.z;
     const double own[3] = {0., gauge.y, gauge.z};
@@ -109,6 +110,7 @@ void PackedModel::add_flange(const Track& track, const Wheelset& wheelset,
     packed.point[rail][0] = model_.rail_y[rail] + in_track[1] + inward * flange.clearance;
     packed.point[rail][1] = -(wheelset.radius + kGaugeDepth);
   }
+  ++model_.flanges;
 }
 
 }  // namespace railstep

@@ -20,7 +20,7 @@ void put_falling(const Model& model, const std::vector<RunningVehicle>& vehicles
   State state = state_on(model, memory.data());
   for (std::size_t b = 0; b < vehicles.size(); ++b) {
     if (!vehicles[b].falling) continue;
-    const VehicleModel& own = model.vehicle[b];
+    const SuspendedModel& own = model.vehicle[b];
     const std::vector<int> first = first_coordinates(vehicles[b].vehicle);
     for (std::size_t body = 0; body + 1 < first.size(); ++body) {
       const std::int32_t z = own.first + first[body];

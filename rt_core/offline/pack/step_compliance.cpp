@@ -4,7 +4,7 @@
 #include <cmath>
 #include <complex>
 
-#include "online/track/line.h"
+#include "online/track/rail_point.h"
 
 namespace railstep {
 namespace {
@@ -14,7 +14,7 @@ RailRow row_of(const Model& model, const LoadPoint& load_point, std::int32_t ele
   RailRow row{load_point.rail, element, {}, 0, {}, {}};
   double shape[3];
   shape_functions(xi, shape);
-  set_height_row(model.cant[load_point.rail], load_point.y, load_point.z, shape, row);
+  set_point_row(model.cant[load_point.rail], load_point.y, load_point.z, shape, kUp, row);
   return row;
 }
 

@@ -75,10 +75,16 @@ void put_wheelsets(const Model& model, double time, State& state) {
     p[0] = travelled(w.travel, 0.).speed * time;
     const double aside = side_force(w);
     if (aside == 0.) continue;
-    const FlangeModel& flange = model.flange[0];
+    const FlangeModel& flange = model.flange[contacts_of(model, b).pair];
     const int side = aside > 0. ? 0 : 1;
     p[1] = model.rail_y[side] + flange.gauge[side][0] - flange.point[side][0];
   }
+}
+
+/// Whether a lateral force presses a wheelset on a flange at t = 0.
+bool leans(const Model& model) {
+  return std::any_of(model.wheelset, model.wheelset + model.wheelsets,
+                     [](const WheelsetModel& w) { return side_force(w) != 0.; });
 }
 
 /// Puts displacements of lines alone into a state.
@@ -165,15 +171,15 @@ Pose equilibrium(const Statics& statics, const PackedModel& packed, double gravi
 Pose passing(const Statics& statics, const PackedModel& packed, double gravity, double time,
              const Pose& now, const Acting& beside) {
   const Model& model = packed.model();
-  if (model.wheelsets == 1 && side_force(model.wheelset[0]) != 0.)
-    return equilibrium(statics, packed, gravity, time, beside);
+  if (leans(model)) return equilibrium(statics, packed, gravity, time, beside);
   Acting acting = loads_at(statics, packed, time, beside);
   const std::size_t loads = acting.forces.size();
   for (ContactId i = 0; i < tread_count(model); ++i) {
-    const WheelsetModel& w = model.wheelset[wheelset_of(model, i)];
+    const WheelsetModel& w = model.wheelset[model.contact[i].bodies];
+    const std::int32_t load_point = model.contact[i].load_point;
     const double x = w.start + travelled(w.travel, 0.).speed * time;
-    acting.forces.push_back({point_of(packed, load_point_of(model, i), x), -wheel_load(w)});
-    acting.ports.push_back(rail_force(model, load_point_of(model, i), x, -wheel_load(w)));
+    acting.forces.push_back({point_of(packed, load_point, x), -wheel_load(w)});
+    acting.ports.push_back(rail_force(model, load_point, x, -wheel_load(w)));
   }
   std::vector<double> memory = start_released(packed);
   State state = state_on(model, memory.data());
@@ -197,11 +203,11 @@ Pose passing(const Statics& statics, const PackedModel& packed, double gravity, 
           height_of(statics.track(), packed, pose.lines, acting.forces[port].at) +
           residual_displacement(model, acting.ports.data(), static_cast<int>(acting.ports.size()),
                                 static_cast<int>(port)) +
-          irregularity(model, w.tread[rail], rail, up, w.start + rolled + track_offset(model, 0),
-                       rolled)
+          irregularity(model, model.contact[tread_of(b, rail)].tread, rail, up,
+                       w.start + rolled + track_offset(model, 0), rolled)
               .depth;
     }
-    pose.wheelsets.push_back(standing_wheelset(model, w, height));
+    pose.wheelsets.push_back(standing_wheelset(model, b, height));
   }
   return pose;
 }
@@ -242,15 +248,11 @@ std::vector<StartingPlace> starting_places(const Model& model) {
   };
   for (std::int32_t i = 0; i < model.loads; ++i)
     add(place(model, model.load[i], 0).place, model.load[i].travel);
-  for (std::int32_t i = 0; i < model.vehicle_wheels; ++i) {
-    const VehicleModel& own = model.vehicle[model.vehicle_wheel[i].vehicle];
-    add(own.start + model.vehicle_wheel[i].place, own.travel);
-  }
+  for (ContactId i = 0; i < wheel_count(model); ++i)
+    add(place_of(model, i), bodies_of(model, i).travel);
   for (std::int32_t r = 0; r < model.runners; ++r)
     for (std::int32_t i = 0; i < model.runner[r].wheelsets; ++i)
       add(model.runner[r].start + model.runner[r].wheelset[i].place, model.runner[r].travel);
-  for (std::int32_t b = 0; b < model.wheelsets; ++b)
-    add(model.wheelset[b].start, model.wheelset[b].travel);
   return all;
 }
 
@@ -279,43 +281,6 @@ std::vector<Eigen::VectorXd> standing_line_forces(const Track& track, const Pack
   return forces;
 }
 
-double wheel_load(const WheelsetModel& w) {
-  double vertical = -w.rest[index_of(BodyMotion::z)];
-  for (std::int32_t i = 0; i < w.forces; ++i) {
-    const double force = force_at(w.force[i], 0., nullptr);
-    if (w.force[i].direction == 2) vertical -= force;
-  }
-  if (!(vertical > 0.))
-    refuse("E-START-02",
-           "no equilibrium: nothing presses a wheelset onto its rails; expected gravity, a force "
-           "downwards, or step.start = \"released\"");
-  return vertical / 2.;
-}
-
-namespace {
-
-/// Lateral place at which a level wheel touches a rail at rest, from the middle of the track, m.
-double contact_y(const Model& model, int rail) {
-  const Cant& cant = model.cant[rail];
-  const CrownTop top = crown_top(cant, model.head_z[rail], model.crown_radius[rail]);
-  return model.rail_y[rail] + (cant.cosine * top.y - cant.sine * top.z);
-}
-
-}  // namespace
-
-std::array<double, 6> standing_wheelset(const Model& model, const WheelsetModel& w,
-                                        const std::array<double, 2>& height) {
-  const double into[2] = {contact_depth({w.hertz[0], 0., 0.}, wheel_load(w)),
-                          contact_depth({w.hertz[1], 0., 0.}, wheel_load(w))};
-  const double roll =
-      ((height[0] - height[1]) - (into[0] - into[1])) / (contact_y(model, 0) - contact_y(model, 1));
-  // A rolled axle is (r + crown) / cos(roll) above the centres of the crowns.
-  const double crown = .5 * (model.crown_radius[0] + model.crown_radius[1]);
-  const double lifted = .5 * roll * roll * (w.radius + crown);
-  const double z = .5 * (height[0] + height[1]) - .5 * (into[0] + into[1]) + lifted;
-  return {0., 0., z, roll, 0., 0.};
-}
-
 namespace {
 
 /// Puts rail vehicles into a state. The rates are those of steady running, and those by which rails
@@ -334,9 +299,11 @@ void put_runners(const PackedModel& packed, const SettledRunners& now, const Set
     std::copy(u.begin(), u.end(), state.u + first);
     std::copy(v.begin(), v.end(), state.v + first);
     double* const reaction = reactions_of(model, state, model.runner[r]);
-    reaction[0] = now.steady[r].resistance +
-                  model.runner[r].mass[0] * travelled(model.runner[r].travel, 0.).acceleration;
-    std::copy(now.steady[r].tension.begin(), now.steady[r].tension.end(), reaction + 1);
+    const Eigen::VectorXd accelerated =
+        constraint_forces_of_acceleration(model.runner[r], .5 * model.scheme.dt);
+    reaction[0] = now.steady[r].resistance + accelerated[0];
+    for (Eigen::Index i = 1; i < accelerated.size(); ++i)
+      reaction[i] = now.steady[r].tension[i - 1] + accelerated[i];
     // A damper in series with a spring has no force.
     const auto& series = packed.runners()[r].matrices.series;
     for (std::size_t i = 0; i < series.size(); ++i) {

@@ -48,13 +48,4 @@ std::vector<StartingPlace> starting_places(const Model& model);
 /// up to 2^20 is a whole number of bays, or if the motion does not settle.
 std::vector<double> start_moving(const Track& track, const PackedModel& packed, double gravity);
 
-/// Vertical force at t = 0 on a wheel of a wheelset on its rails, N. No moment acts on roll, so
-/// that each wheel carries half. Throws Refused if the force is not above 0.
-double wheel_load(const WheelsetModel& wheelset);
-
-/// Coordinates of a wheelset that stands on its rails under its wheel_load().
-/// @param height  of the railheads' tops above rest under the left and the right wheel, m
-std::array<double, 6> standing_wheelset(const Model& model, const WheelsetModel& wheelset,
-                                        const std::array<double, 2>& height);
-
 }  // namespace railstep

@@ -38,23 +38,17 @@ std::vector<double> static_forces(const Model& model) {
 
 /// A wheel as a force.
 LoadModel load_of(const Model& model, int wheel, double force) {
-  const std::int32_t rail = rail_of(model, wheel);
+  const ContactModel& own = model.contact[wheel];
+  const std::int32_t rail = own.rail;
   LoadModel load{};
   const CrownTop top = crown_top(model.cant[rail], model.head_z[rail], model.crown_radius[rail]);
   height_row(model.cant[rail], top.y, top.z, load.row);
   load.rail = rail;
   load.stop = std::numeric_limits<double>::infinity();
   load.force = -force;
-  load.load_point = load_point_of(model, wheel);
-  if (is_of_wheelset(model, wheel)) {
-    const WheelsetModel& set = model.wheelset[wheelset_of(model, wheel)];
-    load.start = set.start;
-    load.travel = set.travel;
-    return load;
-  }
-  const VehicleWheel& own = vehicle_wheel(model, wheel);
-  load.start = model.vehicle[own.vehicle].start + own.place;
-  load.travel = model.vehicle[own.vehicle].travel;
+  load.load_point = own.load_point;
+  load.start = place_of(model, wheel);
+  load.travel = bodies_of(model, wheel).travel;
   return load;
 }
 
@@ -80,12 +74,8 @@ Model evened(const Model& model) {
     load.table_points = 0;
     load.stop = std::numeric_limits<double>::infinity();
   }
-  for (std::int32_t b = 0; b < even.wheelsets; ++b) {
-    WheelsetModel& w = even.wheelset[b];
-    keep_vertical_forces(w);
-    w.tread[0] = w.tread[1] = {};
-  }
-  for (std::int32_t i = 0; i < even.vehicle_wheels; ++i) even.vehicle_wheel[i].tread = {};
+  for (std::int32_t b = 0; b < even.wheelsets; ++b) keep_vertical_forces(even.wheelset[b]);
+  for (ContactId i = 0; i < contact_count(even); ++i) even.contact[i].tread = {};
   return even;
 }
 
@@ -216,8 +206,8 @@ struct Stand {
 Stand stand_on(const Model& model, const double* height) {
   Stand found;
   for (std::int32_t b = 0; b < model.wheelsets; ++b)
-    found.wheelsets.push_back(standing_wheelset(model, model.wheelset[b],
-                                                {height[tread_of(b, 0)], height[tread_of(b, 1)]}));
+    found.wheelsets.push_back(
+        standing_wheelset(model, b, {height[tread_of(b, 0)], height[tread_of(b, 1)]}));
   const Eigen::Index wheels = model.vehicle_wheels;
   if (wheels > 0)
     found.vehicles =

@@ -1,5 +1,6 @@
 #include "offline/start/start_runner.h"
 
+#include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <algorithm>
 
@@ -125,6 +126,25 @@ void add_forces(const PackedModel& packed, const SettledRunners& runners, const 
         acting.ports.push_back(place);
       }
   }
+}
+
+Eigen::VectorXd constraint_forces_of_acceleration(const RunnerModel& r, double time) {
+  const double a = travelled(r.travel, time).acceleration;
+  Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(constraint_count(r), r.size);
+  rows(0, 0) = 1.;
+  for (std::int32_t i = 0; i < r.rods; ++i)
+    rows.row(1 + i) = Eigen::Map<const Eigen::RowVectorXd>(
+        r.rod_row + static_cast<std::ptrdiff_t>(i) * r.size, r.size);
+  Eigen::VectorXd per_mass = Eigen::VectorXd::Zero(r.size), frames = per_mass;
+  for (std::int32_t k = 0; k < kMotions * r.bodies; ++k) per_mass[k] = 1. / r.mass[k];
+  for (std::int32_t b = 0; b < r.bodies; ++b) frames[kMotions * b] = -a;
+  for (std::int32_t i = 0; i < r.wheelsets; ++i)
+    frames[r.wheelset[i].first + index_of(BodyMotion::pitch)] = -a / r.wheelset[i].radius;
+  // rows M^-1 (M frames + rows' force) = 0
+  Eigen::VectorXd force =
+      (rows * per_mass.asDiagonal() * rows.transpose()).ldlt().solve(-(rows * frames));
+  force.tail(r.rods) = -force.tail(r.rods).eval();  // rows are elongations
+  return force;
 }
 
 SettledRunners settle_runners(const PackedModel& packed, const SettledRunners& pressing,

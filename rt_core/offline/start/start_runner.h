@@ -28,6 +28,11 @@ SettledRunners settle_runners(const PackedModel& packed, const SettledRunners& p
                               const Configuration& at, double time, const Acting& acting,
                               std::size_t first_port);
 
+/// Forces at the start that a runner's constraints take by its acceleration alone: ahead by its
+/// drive, then the tension of each rod, N. Springs are as in steady motion then.
+/// @param time  s, in the first step
+Eigen::VectorXd constraint_forces_of_acceleration(const RunnerModel& runner, double time);
+
 /// Fills State::seat: the seats as they lie under the forces of the wheels, the rails at rest.
 void put_seats(const Model& model, State& state);
 

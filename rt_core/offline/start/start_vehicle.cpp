@@ -52,9 +52,13 @@ Together together(const Model& model) {
   Eigen::VectorXd lift = Eigen::VectorXd::Zero(n);
   n = 0;
   for (std::int32_t b = 0; b < model.vehicles; ++b) {
-    const VehicleModel& v = model.vehicle[b];
+    const SuspendedModel& v = model.vehicle[b];
     all.stiffness.block(n, n, v.size, v.size) = Rows(v.stiffness, v.size, v.size);
-    all.row.block(v.first_wheel, n, v.wheels, v.size) = Rows(v.row, v.wheels, v.size);
+    for (std::int32_t i = 0; i < model.vehicle_wheels; ++i) {
+      const ContactModel& wheel = model.contact[vehicle_contact(model, i)];
+      if (wheel.bodies == b)
+        all.row.row(i).segment(n, v.size) = Eigen::Map<const Eigen::RowVectorXd>(wheel.row, v.size);
+    }
     all.weight.segment(n, v.size) = -Eigen::Map<const Eigen::VectorXd>(v.rest, v.size);
     add_forces(v, 0., nullptr, lift.data() + n);
     n += v.size;
@@ -67,11 +71,15 @@ Together together(const Model& model) {
   return all;
 }
 
+const ContactLaw& law_of(const Model& model, Eigen::Index wheel) {
+  return model.contact[vehicle_contact(model, static_cast<std::int32_t>(wheel))].law;
+}
+
 /// Penetration under a force, and its derivative by the force.
 struct Depth {
   double value, slope;  // m, m/N
 };
-Depth depth_of(const ContactModel& contact, double force) {
+Depth depth_of(const ContactLaw& contact, double force) {
   const double value = contact_depth(contact, force);
   return {value, contact.hertz > 0. ? 2. / 3. * value / force : 1. / contact.stiffness};
 }
@@ -87,7 +95,7 @@ SettledVehicles settle_vehicles(const Model& model, const Eigen::MatrixXd& flexi
   Eigen::VectorXd force =
       Eigen::VectorXd::Constant(wheels, all.carried / static_cast<double>(wheels));
   for (Eigen::Index i = 0; i < wheels; ++i)
-    if (model.vehicle_wheel[i].contact.hertz > 0. && !(force[i] > 0.))
+    if (law_of(model, i).hertz > 0. && !(force[i] > 0.))
       refuse("E-START-08",
              "no equilibrium: nothing presses a vehicle onto its rail; expected gravity, a force "
              "downwards, or step.start = \"released\"");
@@ -102,7 +110,7 @@ SettledVehicles settle_vehicles(const Model& model, const Eigen::MatrixXd& flexi
     b.head(n) = (all.row.transpose() * force - all.weight - all.stiffness * u) / stiff;
     b.tail(wheels) = free - all.row * u - flexibility * force;
     for (Eigen::Index i = 0; i < wheels; ++i) {
-      const Depth depth = depth_of(model.vehicle_wheel[i].contact, force[i]);
+      const Depth depth = depth_of(law_of(model, i), force[i]);
       A(n + i, n + i) += stiff * depth.slope;
       b[n + i] -= depth.value;
     }
@@ -117,7 +125,7 @@ SettledVehicles settle_vehicles(const Model& model, const Eigen::MatrixXd& flexi
     for (Eigen::Index i = 0; i < wheels; ++i) {
       const double next = force[i] + stiff * change[n + i];
       // A wheel with a negative force gets a tenth of its last force and is iterated again.
-      const bool lifted = model.vehicle_wheel[i].contact.hertz > 0. && !(next > 0.);
+      const bool lifted = law_of(model, i).hertz > 0. && !(next > 0.);
       const double taken = lifted ? .1 * force[i] : next;
       if (lifted || std::abs(taken - force[i]) > kForceSettled * force.cwiseAbs().maxCoeff())
         settled = false;
@@ -154,10 +162,11 @@ Wheels wheels_of(const PackedModel& packed, const Track& track, double time, con
   Wheels w{std::vector<RailPoint>(count), std::vector<RailForce>(count), std::vector<bool>(count),
            Eigen::VectorXd(n), Eigen::MatrixXd::Zero(n, n)};
   for (std::size_t i = 0; i < count; ++i) {
-    const VehicleWheel& wheel = model.vehicle_wheel[i];
-    const VehicleModel& own = model.vehicle[wheel.vehicle];
-    const double up[3] = {0., 0., 1.}, rolled = travelled(own.travel, 0.).speed * time;
-    const double x = own.start + wheel.place + rolled;
+    const ContactId contact = vehicle_contact(model, static_cast<std::int32_t>(i));
+    const ContactModel& wheel = model.contact[contact];
+    const double up[3] = {0., 0., 1.};
+    const double rolled = travelled(bodies_of(model, contact).travel, 0.).speed * time;
+    const double x = place_of(model, contact) + rolled;
     double& uneven = w.uneven[static_cast<Eigen::Index>(i)];
     w.on_rail[i] = x >= 0. && x <= track.length();
     uneven = signal_at(wheel.tread, rolled).value;

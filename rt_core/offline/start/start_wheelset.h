@@ -10,9 +10,17 @@ namespace railstep {
 /// Lateral force on a wheelset's centre at t = 0, N; above 0 to the left.
 double side_force(const WheelsetModel& wheelset);
 
-/// Throws Refused if a lateral force acts on a wheelset at t = 0 and no flange holds it, or if a
-/// wheelset that leans on its flange is not alone on the track.
+/// Throws Refused if a lateral force acts on a wheelset at t = 0 and no flange holds it.
 void check_sides(const Model& model);
+
+/// Vertical force at t = 0 on a wheel of a wheelset on its rails, N. No moment acts on roll, so
+/// that each wheel carries half. Throws Refused if the force is not above 0.
+double wheel_load(const WheelsetModel& wheelset);
+
+/// Coordinates of a wheelset that stands on its rails under its wheel_load().
+/// @param height  of the railheads' tops above rest under the left and the right wheel, m
+std::array<double, 6> standing_wheelset(const Model& model, std::int32_t wheelset,
+                                        const std::array<double, 2>& height);
 
 /// Contacts of a wheelset at rest. On both treads, z and roll depend on the contacts; if a lateral
 /// force leans it on a flange, this is a third contact, and y depends on it too.

@@ -1,21 +1,38 @@
 #include "online/contact/couple.h"
 
+#include "online/contact/body_contact.h"
 #include "online/contact/fixed_port_force.h"
-#include "online/contact/flange.h"
+#include "online/contact/guide.h"
 #include "online/contact/mean_contact.h"
 #include "online/contact/runner_coupling.h"
 #include "online/contact/system_coupling.h"
 #include "online/contact/track_compliance.h"
 #include "online/contact/track_response.h"
 #include "online/contact/vehicle_contact.h"
-#include "online/contact/vehicle_response.h"
-#include "online/contact/wheelset.h"
 #include "online/track/moving_load.h"
 #include "online/track/p_delta.h"
 
 namespace railstep {
 
 namespace {
+
+/// Gap that forces cannot close within a step, beyond the present velocity, m: in 1 ms this would
+/// take 1000 m/s^2.
+constexpr double kInactiveGap = 1e-3;
+
+/// Finds the contacts of a wheelset on its treads and flanges.
+void locate_wheelset(const Model& model, std::int32_t b, const Configuration& located, double ahead,
+                     Coupling& c) noexcept {
+  const WheelsetContacts own = contacts_of(model, b);
+  find_contacts(model, b, located, c.contact + own.at[0], ahead);
+  if (own.pair >= 0)
+    find_flanges(model, model.flange[own.pair], located, c.contact + own.at[2], ahead);
+  for (int n = 0; n < own.count; ++n) {
+    WheelContact& at = c.contact[own.at[n]];
+    at.inactive = is_flange(model, own.at[n]) && at.on_rail && at.penetration < -kInactiveGap;
+    if (at.inactive) at.on_rail = false;
+  }
+}
 
 /// Finds the contacts where the forces of the step act: at its end, on u + dt v of bodies and
 /// banded lines. If forces are held it is the middle of the step, with condensed lines as they are
@@ -28,27 +45,22 @@ void locate_contacts(const Model& model, const Stage& stage, const State& s, Wor
 #pragma omp simd
   for (std::int32_t i = modal_unknowns(model); i < model.unknowns; ++i)
     w.scaled[i] = s.u[i] + ahead * s.v[i];
-  for (std::int32_t b = 0; b < model.wheelsets; ++b) {
-    const WheelsetModel& set = model.wheelset[b];
-    find_contacts(model, set, located_on(model, s, w), c.contact + tread_of(b, 0),
-                  later * s.v[set.first]);
-    for (int side = 0; side < 2; ++side) {
-      const ContactId i = tread_of(b, side);
-      c.law[i] = {set.hertz[side], 0., 0.};
-      c.place[i] = {model, set.load_point[side], c.contact[i].row.element, c.contact[i].xi, 0.};
-    }
-  }
-  locate_flanges(model, s, w, later, c);
-  for (std::int32_t v = 0; v < model.vehicles; ++v)
-    place_vehicle_wheels(model, model.vehicle[v], stage.step, stage.before + (stage.span - ahead),
-                         c.contact, later);
-  for (ContactId i = tread_count(model); i < wheel_count(model); ++i)
-    c.place[i] = {model, load_point_of(model, i), c.contact[i].row.element, c.contact[i].xi, 0.};
+  for (std::int32_t b = 0; b < model.wheelsets; ++b)
+    locate_wheelset(model, b, located_on(model, s, w), later * s.v[model.wheelset[b].first], c);
+  place_vehicle_wheels(model, stage.step, stage.before + (stage.span - ahead), c.contact, later);
+  for (ContactId i = 0; i < c.contacts; ++i)
+    c.place[i] = {model, model.contact[i].load_point, c.contact[i].row.element, c.contact[i].xi,
+                  0.};
   locate_wheel_seats(model, stage, s, w, c);
 }
 
-/// Whether there is a rail or ground under a wheel.
-bool stands(const WheelContact& at) noexcept { return at.on_rail || at.on_ground; }
+/// Coupling::rail_depth of all contacts. The rails must have been located.
+void find_rail_depths(const Model& model, const Workspace& w, Coupling& c) noexcept {
+  for (ContactId i = 0; i < c.contacts; ++i)
+    c.rail_depth[i] = is_upright(model, i)
+                          ? c.located[i] + c.contact[i].irregularity
+                          : c.contact[i].penetration + lift_by(model, c, i, w.scaled);
+}
 
 /// Residual displacement of the rail under each wheel by the loads and the external wheels.
 void find_residual_by_loads(const Model& model, const Stage& stage, const ExternalContact* external,
@@ -64,14 +76,6 @@ void find_residual_by_loads(const Model& model, const Stage& stage, const Extern
     for (int i = 0; i < c.rows; ++i)
       c.by_loads[i] += load.force * residual_between(model, at, c.place[i]);
   }
-}
-
-/// Change of the approach of wheel i by a unit force at wheel j, through the body that carries
-/// both.
-double body_compliance(const Model& model, const Coupling& c, ContactId i, ContactId j) noexcept {
-  if (is_of_wheelset(model, i) != is_of_wheelset(model, j)) return 0.;
-  return is_of_wheelset(model, i) ? wheelset_compliance(model, c, i, j)
-                                  : vehicle_compliance(model, i, j);
 }
 
 /// W between all rows: through the lines, the bodies of contacts and the residual flexibility.
@@ -107,8 +111,7 @@ void track_penetration(const Model& model, const State& s, const Workspace& w,
     else if (c.contact[i].on_ground)
       c.track_free[i] = 0.;
     if (stands(c.contact[i]))
-      c.track_free[i] += is_of_wheelset(model, i) ? wheelset_offset(model, s, w, c, i)
-                                                  : vehicle_offset(model, s, c, i);
+      c.track_free[i] += c.rail_depth[i] - (1. - model.scheme.theta) * lift_by(model, c, i, s.u);
   }
   for (int i = c.contacts; i < c.rows; ++i) {
     c.track_free[i] = 0.;
@@ -138,27 +141,23 @@ Status status_of(PortStatus met) noexcept {
 }
 
 /// Penetration of a port without the forces of all.
-double free_depth(const Model& model, const State& s, const Workspace& w, const Coupling& c,
-                  int port) noexcept {
+double free_depth(const Model& model, const Workspace& w, const Coupling& c, int port) noexcept {
   if (port >= c.contacts || !stands(c.contact[port])) return c.track_free[port];
-  return c.track_free[port] - model.scheme.theta * (is_of_wheelset(model, port)
-                                                        ? free_lift(model, s, c, port)
-                                                        : lift_by(model, c, port, w.solved));
+  return c.track_free[port] - model.scheme.theta * lift_by(model, c, port, w.solved);
 }
 
 /// Ports for given multipliers.
 /// @param runners  null: there are none on this track
-Solved solve(const Model& model, const State& s, const Workspace& w, Coupling& c,
+Solved solve(const Model& model, const Workspace& w, Coupling& c,
              CoupledRunners* runners) noexcept {
   if (runners != nullptr) {
     for (int i = 0; i < runners->scalars; ++i)
-      runners->z_free[i] = free_depth(model, s, w, c, port_of(c, i));
+      runners->z_free[i] = free_depth(model, w, c, port_of(c, i));
     const NewtonResult met = solve_coupled_runners(model, w, c, *runners);
     return {status_of(met.status), met.iterations};
   }
-  double d_free[kPorts];
-  for (int i = 0; i < c.ports; ++i) d_free[i] = free_depth(model, s, w, c, i);
-  const PortResult met = solve_ports(c.ports, c.W, c.law, d_free, c.force, c.penetration);
+  for (int i = 0; i < c.ports; ++i) c.penetration[i] = free_depth(model, w, c, i);
+  const PortResult met = solve_ports(c.ports, c.W, c.law, c.penetration, c.force, c.penetration);
   return {status_of(met.status), met.iterations};
 }
 
@@ -169,11 +168,12 @@ void solve_coupled(const Model& model, const Stage& stage, State& s, Workspace& 
   bool settled = false;
   Status met = Status::ok;
   for (std::int32_t iteration = 0; iteration < cap && !settled; ++iteration) {
-    const Solved ports = solve(model, s, w, c, runners);
+    take_multipliers(model, s, c, w);
+    const Solved ports = solve(model, w, c, runners);
     met = ports.status;
     if (ports.iterations > result.iterations) result.iterations = ports.iterations;
     result.violation = 0.;
-    settled = move_wheelsets(model, stage, s, w, c, result.violation);
+    settled = correct_multipliers(model, stage, s, w, c, result.violation);
     if (iteration + 1 > result.iterations) result.iterations = iteration + 1;
   }
   result.status = result.status | met;
@@ -191,19 +191,11 @@ void solve_all(const Model& model, const Stage& stage, State& s, Workspace& w, C
   if (!settled) result.status = result.status | Status::cap_reached;
 }
 
-bool impact_is_unresolved_at(const Model& model, const Coupling& c, const State& s,
-                             ContactId i) noexcept {
-  if (is_flange(model, i)) return flange_impact_is_unresolved(model, c, s, i);
-  return is_of_wheelset(model, i) ? tread_impact_is_unresolved(model, c, s, i)
-                                  : vehicle_impact_is_unresolved(model, c, s, i);
-}
-
 void publish_wheels(const Model& model, const Coupling& c, State& state,
                     CoupleResult& result) noexcept {
   for (ContactId i = 0; i < c.contacts; ++i) {
     const WheelContact& at = c.contact[i];
-    if (state.contact_force[i] <= 0. && c.force[i] > 0. &&
-        impact_is_unresolved_at(model, c, state, i))
+    if (state.contact_force[i] <= 0. && c.force[i] > 0. && impact_is_unresolved(model, c, state, i))
       result.status = result.status | Status::contact_unresolved;
     state.contact_force[i] = c.force[i];
     result.gap[i] = -c.penetration[i];
@@ -231,16 +223,16 @@ CoupleResult couple(const Model& model, const Stage& stage, const ExternalContac
   c.bases = c.contacts + c.of_set * ((c.rows - c.contacts) / (2 * kWheelSeatRows));
   c.shapes_levers = model.fixed.count > 0 || couples_system(model);
   c.W = w.compliance;
-  const double time = time_of(model.scheme, stage);
+  const double time = time_of(model.scheme, stage) - (1. - held_fraction(model)) * stage.span;
   locate_contacts(model, stage, state, w, c);
   find_acting(model, c);
   respond(model, state, w, c);
   if (c.mirrored) lean_wheel_seats(model, c);
+  find_rail_depths(model, w, c);
   find_residual_by_loads(model, stage, external, c);
-  free_wheelsets(model, stage, state, w, c);
+  free_wheelsets(model, stage, time, state, w, c);
   free_vehicles(model, time, state, w);
-  find_vehicle_laws(model, time, state, w, c);
-  find_flange_laws(model, state, w, c);
+  find_contact_laws(model, time, state, w, c);
   compliance(model, w, c);
   track_penetration(model, state, w, c);
   if (model.scheme.mean != 0) find_means(model, state, c);
@@ -254,7 +246,7 @@ CoupleResult couple(const Model& model, const Stage& stage, const ExternalContac
   if (has_runners)
     result.status = result.status | move_coupled_runners(model, c, runners, state, w);
   move_track(model, w, c);
-  move_vehicles(model, w, c);
+  move_bodies(model, c, w);
   if (model.fixed.count > 0) apply_fixed_port_forces(model, c, state, w);
   finish_track(model, w);
   publish_wheels(model, c, state, result);

@@ -33,6 +33,7 @@ struct Coupling {
   bool acts[kMaxTrackRows][kMaxLines];      // whether forces along a base move a line
   Panels panels[kMaxTrackRows][kMaxLines];  // of a base's response, in banded lines that it moves
   double by_loads[kMaxTrackRows];           // residual displacement by the loads, m
+  double rail_depth[kMaxWheels];  // penetration when located, less the lift by the bodies, m
   double located[kMaxTrackRows];  // displacement of the lines when contacts were located, m
   double moved[kMaxTrackRows];    // without contact forces since then, m
   FreeWheelset wheelset[kMaxWheelsets];
@@ -44,9 +45,23 @@ struct Coupling {
   double penetration[kPorts];                // m; of scenes without runners [ports]
 };
 
+/// Displacement along a coordinate of a wheelset by a unit force along it, m/N or rad/(N m).
+inline double compliance_of(const WheelsetModel& set, int k) noexcept {
+  return set.inverse[(kMotions + 1) * k];
+}
+/// Whether there is a rail or ground under a contact that acts.
+inline bool stands(const WheelContact& at) noexcept { return at.on_rail || at.on_ground; }
+
 /// The lift of a contact off its rail over the coordinates of its bodies, in the step's geometry.
 inline const double* lift_row(const Model& model, const Coupling& c, ContactId i) noexcept {
-  return is_of_wheelset(model, i) ? c.contact[i].body_row : row_of_wheel(model, i);
+  return is_upright(model, i) ? model.contact[i].row : c.contact[i].body_row;
+}
+/// Coordinate k of these bodies moved by a unit force there; a wheelset's inverse is diagonal.
+inline double moved_by_force(const Model& model, const Coupling& c, ContactId i, int k) noexcept {
+  const ContactModel& own = model.contact[i];
+  return is_upright(model, i)
+             ? own.moved[k]
+             : compliance_of(model.wheelset[own.bodies], k) * c.contact[i].body_row[k];
 }
 /// The lift of a contact by displacements or rates of all unknowns.
 inline double lift_by(const Model& model, const Coupling& c, ContactId i,

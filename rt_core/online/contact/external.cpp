@@ -5,73 +5,46 @@
 #include "online/model/external_input.h"
 #include "online/model/progress.h"
 #include "online/track/p_delta.h"
+#include "online/track/rail_point.h"
 
 namespace railstep {
 
 namespace {
-
-/// Roll of the section under a point, rad.
-double roll_under(const Model& model, const RailRow& place, const double* shape,
-                  const Configuration& at) noexcept {
-  RailRow row{};
-  row.rail = place.rail;
-  row.element = place.element;
-  for (int i = 0; i < 3; ++i) {
-    row.coefficient[i][5] = .5 * shape[i];
-    row.coefficient[i][7] = -.5 * shape[i];
-  }
-  double roll = 0.;
-  for (std::int32_t l = 0; l < model.lines; ++l) roll += motion(model.line[l], row, at);
-  return roll;
-}
-
-/// Rows of the point (y, z) of the section along the track's axes.
-void fill_rows(const Cant& cant, const double* shape, double y, double z,
-               ExternalContact& at) noexcept {
-  const double lever[3] = {1., y, z};
-  for (int d = 0; d < 3; ++d) {
-    double axis[3] = {0., 0., 0.}, along[3];
-    axis[d] = 1.;
-    to_rail(cant, axis, along);
-    for (int i = 0; i < 3; ++i)
-      for (int k = 0; k < 9; ++k)
-        at.row[d].coefficient[i][k] = shape[i] * (lever[k / 3] * along[k % 3]);
-  }
-}
 
 void place_wheel(const Model& model, const ExternalWheelModel& wheel, std::int64_t step,
                  const double* input, const Configuration& located, ExternalContact& at) noexcept {
   at = ExternalContact{};
   const double* own = input + wheel.input;
   at.place = own[kExternalX] - track_offset(model, step);
-  const double scaled = at.place / model.element_length;
+  const PlaceOnRails place = place_on_rails(model, at.place);
   const double radius = model.crown_radius[wheel.rail], half = model.head_half_width[wheel.rail];
-  at.on_rail = scaled >= 0. && scaled <= model.elements && std::fabs(own[kExternalY]) <= half;
+  at.on_rail = place.on_rail && std::fabs(own[kExternalY]) <= half;
   at.port.load_point = kNoLoadPoint;
   if (!at.on_rail) return;
-  std::int32_t element = static_cast<std::int32_t>(scaled);
-  if (element == model.elements) element = model.elements - 1;
-  const double xi = 2. * (scaled - element) - 1.;
   const Cant& cant = model.cant[wheel.rail];
   const CrownTop top = crown_top(cant, model.head_z[wheel.rail], radius);
   const double y = top.y + own[kExternalY];  // on the crown's circle
   const double z = (model.head_z[wheel.rail] - radius) + std::sqrt(radius * radius - y * y);
   double shape[3];
-  shape_functions(xi, shape);
-  for (RailRow& row : at.row) {
-    row.rail = wheel.rail;
-    row.element = element;
+  shape_functions(place.xi, shape);
+  RailRow of_roll{};
+  of_roll.rail = wheel.rail;
+  of_roll.element = place.element;
+  for (int d = 0; d < 3; ++d) {
+    at.row[d] = of_roll;
+    double axis[3] = {0., 0., 0.};
+    axis[d] = 1.;
+    set_point_row(cant, y, z, shape, axis, at.row[d]);
   }
-  fill_rows(cant, shape, y, z, at);
-  const double up[3] = {0., 0., 1.}, roll = roll_under(model, at.row[2], shape, located);
-  at.roll = roll;
+  set_roll_row(shape, of_roll);
+  const double roll = at.roll = motion(model, of_roll, located);
   double along[3];
-  to_rail(cant, up, along);
+  to_rail(cant, kUp, along);
   SeatMotions seats;
-  const double higher = add_p_delta(model, located, roll, xi, y, z, up, at.row[2], seats);
+  const double higher = add_p_delta(model, located, roll, place.xi, y, z, kUp, at.row[2], seats);
   at.offset = .5 * roll * roll * (z * along[2] + y * along[1]) - higher;
   for (int d = 0; d < 3; ++d) at.force[d] = own[kExternalForce + d];
-  at.port = {model, wheel.load_point, element, xi, at.force[2]};
+  at.port = {model, wheel.load_point, place.element, place.xi, at.force[2]};
 }
 
 /// Response of the lines to a unit force along a row: of condensed ones to a force held over the
@@ -120,13 +93,6 @@ void mode_rates(const Model& model, const State& s, Workspace& w) noexcept {
   }
 }
 
-/// Displacement of a contact's point by the lines, without terms of second order.
-double moved(const Model& model, const RailRow& row, const Configuration& at) noexcept {
-  double sum = 0.;
-  for (std::int32_t l = 0; l < model.lines; ++l) sum += motion(model.line[l], row, at);
-  return sum;
-}
-
 }  // namespace
 
 void place_external(const Model& model, std::int64_t step, const double* input,
@@ -168,7 +134,7 @@ void publish_external(const Model& model, const State& s, const ExternalContact*
     if (at.roll * at.roll > kLargeRollSquared) outputs.status = outputs.status | Status::large_turn;
     for (int d = 0; d < 3; ++d)
       outputs.external_displacement[n][d] =
-          at.on_rail ? moved(model, at.row[d], {s.u, {s.u, s.v}}) + (d == 2 ? at.offset : 0.) : 0.;
+          at.on_rail ? motion(model, at.row[d], {s.u, {s.u, s.v}}) + (d == 2 ? at.offset : 0.) : 0.;
   }
 }
 
@@ -178,7 +144,7 @@ void publish_external_rates(const Model& model, const State& s, const ExternalCo
   for (std::int32_t n = 0; n < model.external_wheels; ++n)
     for (int d = 0; d < 3; ++d)
       outputs.external_velocity[n][d] =
-          contact[n].on_rail ? moved(model, contact[n].row[d], {s.v, {w.u_star, w.v_star}}) : 0.;
+          contact[n].on_rail ? motion(model, contact[n].row[d], {s.v, {w.u_star, w.v_star}}) : 0.;
 }
 
 void external_compliance(const Model& model, const ExternalContact* contact, Workspace& w,
@@ -193,7 +159,7 @@ void external_compliance(const Model& model, const ExternalContact* contact, Wor
       const ExternalContact& at = contact[wheel];
       double sum = 0.;
       const bool both = from.on_rail && at.on_rail;
-      if (both) sum = moved(model, at.row[direction], {w.solved, {w.solved, w.imaginary}});
+      if (both) sum = motion(model, at.row[direction], {w.solved, {w.solved, w.imaginary}});
       if (both && direction == 2 && along == 2)
         sum +=
             i == j ? residual_under(model, at.port) : residual_between(model, from.port, at.port);

@@ -134,7 +134,8 @@ double mean_start(const PortLaw& law, double d_free, double w) noexcept {
   return d;
 }
 
-/// The problem, and one iterate with the quantities that follow from it.
+/// The problem, and one iterate with the quantities that follow from it. Sums over W, which is
+/// symmetric, take a row for all ports at once, so that no sum waits for itself.
 struct Problem {
   int n;
   const double* W;
@@ -147,32 +148,45 @@ struct Point {
   double residual, scale;                  // max |F|; scale of its rounding
 };
 
-void evaluate(const Problem& p, Point& x) noexcept {
+/// @param size  [n] scratch: the caller has memory that it does not need now, and the stack is
+/// short
+void evaluate(const Problem& p, Point& x, double* size) noexcept {
   x.residual = 0.0;
   x.scale = 0.0;
-  for (int i = 0; i < p.n; ++i) x.f[i] = force_at(p.law[i], x.d[i]);
+  double* const sum = x.F;
   for (int i = 0; i < p.n; ++i) {
-    double sum = 0.0, size = std::fabs(p.d_free[i]);
-    for (int j = 0; j < p.n; ++j) {
-      const double term = p.W[i * p.n + j] * x.f[j];
-      sum += term;
-      size += std::fabs(term);
+    x.f[i] = force_at(p.law[i], x.d[i]);
+    sum[i] = 0.0;
+    size[i] = std::fabs(p.d_free[i]);
+  }
+  for (int j = 0; j < p.n; ++j) {
+    const double* const own = p.W + j * p.n;
+    const double force = x.f[j];
+#pragma omp simd
+    for (int i = 0; i < p.n; ++i) {
+      const double term = own[i] * force;
+      sum[i] += term;
+      size[i] += std::fabs(term);
     }
+  }
+  for (int i = 0; i < p.n; ++i) {
     // A port without force has its gap in closed form.
-    if (!acts(p.law[i], x.f[i]) && force_at(p.law[i], p.d_free[i] - sum) == 0.0)
-      x.d[i] = p.d_free[i] - sum;
-    x.F[i] = x.d[i] + sum - p.d_free[i];
+    if (!acts(p.law[i], x.f[i]) && force_at(p.law[i], p.d_free[i] - sum[i]) == 0.0)
+      x.d[i] = p.d_free[i] - sum[i];
+    x.F[i] = x.d[i] + sum[i] - p.d_free[i];
     // Written so that NaN counts as large.
     if (!(std::fabs(x.F[i]) <= x.residual)) x.residual = std::fabs(x.F[i]);
-    if (size > x.scale) x.scale = size;
+    if (size[i] > x.scale) x.scale = size[i];
   }
 }
 
-/// Gradient of the convex function along a step in f, at x: negative while it decreases.
-double slope(const Problem& p, const Point& x, const double* step) noexcept {
+/// Gradient of the convex function along the step in f between two points, at x: negative while it
+/// decreases.
+double slope(const Problem& p, const Point& x, const Point& from, const Point& to) noexcept {
   double sum = 0.0;
   for (int i = 0; i < p.n; ++i)
-    sum += (acts(p.law[i], x.f[i]) ? x.F[i] : x.F[i] - x.d[i] + depth_of(p.law[i], 0.0)) * step[i];
+    sum += (acts(p.law[i], x.f[i]) ? x.F[i] : x.F[i] - x.d[i] + depth_of(p.law[i], 0.0)) *
+           (to.f[i] - from.f[i]);
   return sum;
 }
 
@@ -183,15 +197,20 @@ SmallSolve newton_step(const Problem& p, const Point& x, const double* K, double
   for (int i = 0; i < p.n; ++i) S[i] = std::sqrt(K[i]);
   for (int i = 0; i < p.n; ++i) {
     t[i] = -S[i] * x.F[i];
-    for (int j = 0; j < p.n; ++j)
-      A[i * p.n + j] = S[i] * p.W[i * p.n + j] * S[j] + (i == j ? 1.0 : 0.0);
+    const double* const own = p.W + i * p.n;
+    double* const row = A + i * p.n;
+#pragma omp simd
+    for (int j = i; j < p.n; ++j) row[j] = S[i] * own[j] * S[j];
+    row[i] += 1.0;
   }
   const SmallSolve solve = solve_small(A, t, p.n);
   if (solve != SmallSolve::solved)
     for (int i = 0; i < p.n; ++i) t[i] = -S[i] * x.F[i] / (1.0 + K[i] * p.W[i * p.n + i]);
-  for (int i = 0; i < p.n; ++i) {
-    delta[i] = -x.F[i];
-    for (int j = 0; j < p.n; ++j) delta[i] -= p.W[i * p.n + j] * S[j] * t[j];
+  for (int i = 0; i < p.n; ++i) delta[i] = -x.F[i];
+  for (int j = 0; j < p.n; ++j) {
+    const double* const own = p.W + j * p.n;
+#pragma omp simd
+    for (int i = 0; i < p.n; ++i) delta[i] -= own[i] * S[j] * t[j];
   }
   return solve;
 }
@@ -226,25 +245,24 @@ constexpr double kOvershoot = 1000.0;
 
 /// One globalised iteration x -> next. Returns how its linear system was solved.
 SmallSolve iterate(const Problem& p, const Point& x, Point& next) noexcept {
-  double K[kPorts], delta[kPorts], step[kPorts];
+  double K[kPorts], delta[kPorts];
   for (int i = 0; i < p.n; ++i)
     K[i] = acts(p.law[i], x.f[i]) ? stiffness_at(p.law[i], x.d[i]) : 0.0;
   const SmallSolve solve = newton_step(p, x, K, delta);
   advance(p, x, K, delta, next.d);
-  evaluate(p, next);
+  evaluate(p, next, delta);
   for (int halving = 0; halving < 3; ++halving) {
-    for (int i = 0; i < p.n; ++i) step[i] = next.f[i] - x.f[i];
-    const double before = slope(p, x, step), after = slope(p, next, step);
+    const double before = slope(p, x, x, next), after = slope(p, next, x, next);
     if (!(before < 0.0) || !(after > -kOvershoot * before)) break;
     // Far beyond the minimum of the convex function on this line: back to the secant's zero.
     const double part = before / (before - after);
     for (int i = 0; i < p.n; ++i) {
-      const double force = x.f[i] + part * step[i];
+      const double force = x.f[i] + part * (next.f[i] - x.f[i]);
       next.d[i] = acts(p.law[i], force) ? depth_of(p.law[i], force)
                   : next.d[i] < 0.0     ? next.d[i]
                                         : 0.0;
     }
-    evaluate(p, next);
+    evaluate(p, next, delta);
   }
   return solve;
 }
@@ -262,29 +280,34 @@ bool usable(const Problem& p) noexcept {
   for (int i = 0; i < p.n; ++i) {
     if (!std::isfinite(p.d_free[i]) || !is_law(p.law[i])) return false;
     if (!(p.W[i * p.n + i] >= 0.0)) return false;
-    for (int j = 0; j < p.n; ++j)
-      if (!std::isfinite(p.W[i * p.n + j])) return false;
   }
-  return true;
+  double off[4] = {};  // each difference is 0, but for infinities and NaN
+  const int count = p.n * p.n;
+  for (int k = 0; k < count; ++k) off[k % 4] += p.W[k] - p.W[k];
+  return (off[0] + off[1]) + (off[2] + off[3]) == 0.0;
 }
 
 /// Starts from the last step's forces. A port without force starts as if it were alone in the shape
 /// under these forces.
-void start(const Problem& p, const double* last, Point& x) noexcept {
-  for (int i = 0; i < p.n; ++i)
-    x.f[i] = std::isfinite(last[i]) && acts(p.law[i], last[i]) ? last[i] : 0.0;
+void start(const Problem& p, const double* last, Point& x, double* size) noexcept {
+  double* const free = x.d;
   for (int i = 0; i < p.n; ++i) {
-    if (p.law[i].mean) {
-      x.d[i] = mean_start(p.law[i], p.d_free[i], p.W[i * p.n + i]);
-      continue;
-    }
-    double free = p.d_free[i];
-    for (int j = 0; j < p.n; ++j) free -= p.W[i * p.n + j] * x.f[j];
-    x.d[i] = acts(p.law[i], x.f[i]) ? depth_of(p.law[i], x.f[i])
-             : free > 0.0           ? lone_depth(p.law[i], free, p.W[i * p.n + i])
-                                    : free;
+    x.f[i] = std::isfinite(last[i]) && acts(p.law[i], last[i]) ? last[i] : 0.0;
+    free[i] = p.d_free[i];
   }
-  evaluate(p, x);
+  for (int j = 0; j < p.n; ++j) {
+    const double* const own = p.W + j * p.n;
+#pragma omp simd
+    for (int i = 0; i < p.n; ++i) free[i] -= own[i] * x.f[j];
+  }
+  for (int i = 0; i < p.n; ++i) {
+    const double w = p.W[i * p.n + i];
+    x.d[i] = p.law[i].mean            ? mean_start(p.law[i], p.d_free[i], w)
+             : acts(p.law[i], x.f[i]) ? depth_of(p.law[i], x.f[i])
+             : free[i] > 0.0          ? lone_depth(p.law[i], free[i], w)
+                                      : free[i];
+  }
+  evaluate(p, x, size);
 }
 
 bool done(const Point& x) noexcept { return x.residual <= kPortTolerance * x.scale; }
@@ -310,7 +333,7 @@ PortResult solve_ports(int n, const double* W, const PortLaw* law, const double*
   Point *x = points, *best = points + 1, *next = points + 2;
   best->residual = std::numeric_limits<double>::infinity();  // none yet
   best->scale = 0.0;
-  start(p, f, *x);
+  start(p, f, *x, next->F);
   int iterations = 0;
   bool indefinite = false;
   while (!done(*x) && iterations < cap) {
@@ -324,7 +347,7 @@ PortResult solve_ports(int n, const double* W, const PortLaw* law, const double*
   if (x->residual < best->residual || done(*x)) best = x;
   if (!done(*best)) {  // without any force all numbers are finite
     for (int i = 0; i < n; ++i) next->d[i] = 0.0;
-    evaluate(p, *next);
+    evaluate(p, *next, f);
     if (!(best->residual < next->residual)) best = next;
   }
   for (int i = 0; i < n; ++i) {

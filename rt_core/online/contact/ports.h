@@ -67,7 +67,7 @@ inline constexpr double kPortTolerance = 1e-12;
 /// @param d_free  [n] penetrations without port forces, m
 /// @param f       [n] in: forces of the last step (a start; of one-sided ports anything not a
 ///                positive number counts as none); out: forces, N, finite, >= 0 of one-sided ones
-/// @param d       [n] out: penetrations, m; negative is a gap
+/// @param d       [n] out: penetrations, m; negative is a gap. It may be d_free
 /// @param cap     most iterations, clipped to 0..8
 /// Work: at most 8 iterations of one n x n solve and four products. Always finite.
 [[nodiscard]] PortResult solve_ports(int n, const double* W, const PortLaw* law,

@@ -1,6 +1,7 @@
 #include "online/contact/system_coupling.h"
 
 #include "online/contact/track_response.h"
+#include "online/math/dense.h"
 #include "online/math/scalar.h"
 #include "online/system/track_ports.h"
 #include "online/track/closing.h"
@@ -16,17 +17,19 @@ constexpr double kRounding = 1e-14;
 /// for.
 struct CoupledSystem {
   double* free;     // [9 ports] displacements of the rails without contacts and the system
-  double* force;    // [9 ports] forces of the system on its ports without contact forces
   double* by_port;  // [9 ports][ports of contacts] displacement by a unit force on a port
   double* change;   // [ports of contacts][9 ports] of the forces by a unit force of each
-  double* moved;    // [2][9 ports] scratch
+  double* moved;    // [3][9 ports] scratch
+  double* beyond;   // [ports of contacts] displacement by the system that W does not give
+  double* by;       // [ports of contacts] its last change
 };
 CoupledSystem views(const Model& model, const Coupling& c, const Workspace& w) noexcept {
   const std::ptrdiff_t n = std::ptrdiff_t{9} * model.system.ports;
   double* const free = w.beside;
-  double* const by_port = free + 2 * n;
+  double* const by_port = free + n;
   double* const change = by_port + n * c.ports;
-  return {free, free + n, by_port, change, change + n * c.ports};
+  double* const moved = change + n * c.ports;
+  return {free, by_port, change, moved, moved + 3 * n, moved + 3 * n + c.ports};
 }
 
 /// Displacements of the ports by the lines without contacts.
@@ -103,11 +106,45 @@ void add_compliance(const Model& model, const State& s, const Workspace& w, Coup
     }
 }
 
+/// Moves the contacts by what the system's present forces do beyond W, in which the part by the
+/// contacts' forces is symmetric; the system's own change need not be.
+/// @param runners  whose seats move too, or null
+/// @returns whether this is too little to count; then nothing moves
+bool move_beyond(const Model& model, const State& s, const Workspace& w, Coupling& c,
+                 const CoupledSystem& beside, CoupledRunners* runners) noexcept {
+  const std::int32_t n = 9 * model.system.ports;
+  double *const now = beside.moved, *const expected = now + n, *const pressed = expected + n;
+  find_port_forces(model, s, w, now);
+  for (std::int32_t k = 0; k < n; ++k) {
+    expected[k] = pressed[k] = 0.;
+    for (int j = 0; j < c.ports; ++j) {
+      expected[k] += beside.change[std::ptrdiff_t{n} * j + k] * c.force[j];
+      pressed[k] += beside.by_port[std::ptrdiff_t{c.ports} * k + j] * c.force[j];
+    }
+    pressed[k] *= model.scheme.theta;
+  }
+  double most = 0., largest = 0., *const by = beside.by;
+  for (int i = 0; i < c.ports; ++i) {
+    const double by_system = moved_by(model, c, beside, i, now);
+    const double in_w = .5 * (moved_by(model, c, beside, i, expected) +
+                              dot(beside.change + std::ptrdiff_t{n} * i, pressed, n));
+    by[i] = (by_system - in_w) - beside.beyond[i];
+    most = larger(most, magnitude(by[i]));
+    largest = larger(largest, magnitude(by_system));
+  }
+  if (most <= model.system.tolerance * largest || most <= kRounding) return true;
+  for (int i = 0; i < c.ports; ++i) {
+    beside.beyond[i] += by[i];
+    c.track_free[i] -= by[i];
+    if (runners != nullptr && i >= c.contacts && i < c.rows) move_seat(c, i, -by[i], *runners);
+  }
+  return false;
+}
+
 }  // namespace
 
 void couple_system(const Model& model, State& s, Workspace& w, Coupling& c,
                    SystemResult& result) noexcept {
-  const std::int32_t n = 9 * model.system.ports;
   const CoupledSystem beside = views(model, c, w);
   find_free(model, w, beside.free);
   find_by_port(model, w, c, beside.by_port);
@@ -115,39 +152,15 @@ void couple_system(const Model& model, State& s, Workspace& w, Coupling& c,
   for (int i = c.contacts; i < c.rows; ++i) c.force[i] = 0.;  // not known yet
   solve_beside(model, s, w, c, beside, result);
   add_compliance(model, s, w, c, beside);
-  find_port_forces(model, s, w, beside.force);
-  for (int j = 0; j < c.ports; ++j)
-    for (std::int32_t k = 0; k < n; ++k)
-      beside.force[k] -= beside.change[std::ptrdiff_t{n} * j + k] * c.force[j];
-  for (int i = 0; i < c.ports; ++i) c.track_free[i] -= moved_by(model, c, beside, i, beside.force);
+  for (int i = 0; i < c.ports; ++i) beside.beyond[i] = 0.;
+  static_cast<void>(move_beyond(model, s, w, c, beside, nullptr));
 }
 
 bool settle_system(const Model& model, State& s, Workspace& w, Coupling& c, CoupledRunners* runners,
                    SystemResult& result) noexcept {
   const CoupledSystem beside = views(model, c, w);
-  const std::int32_t n = 9 * model.system.ports;
   solve_beside(model, s, w, c, beside, result);
-  double *const missed = beside.moved, *const now = beside.moved + n;
-  find_port_forces(model, s, w, now);
-  for (std::int32_t k = 0; k < n; ++k) {
-    double expected = beside.force[k];
-    for (int j = 0; j < c.ports; ++j)
-      expected += beside.change[std::ptrdiff_t{n} * j + k] * c.force[j];
-    missed[k] = now[k] - expected;
-    beside.force[k] += missed[k];
-  }
-  double most = 0., largest = 0.;
-  for (int i = 0; i < c.ports; ++i) {
-    most = larger(most, magnitude(moved_by(model, c, beside, i, missed)));
-    largest = larger(largest, magnitude(moved_by(model, c, beside, i, now)));
-  }
-  if (most <= model.system.tolerance * largest || most <= kRounding) return true;
-  for (int i = 0; i < c.ports; ++i) {
-    const double by = moved_by(model, c, beside, i, missed);
-    c.track_free[i] -= by;
-    if (runners != nullptr && i >= c.contacts && i < c.rows) move_seat(c, i, -by, *runners);
-  }
-  return false;
+  return move_beyond(model, s, w, c, beside, runners);
 }
 
 }  // namespace railstep

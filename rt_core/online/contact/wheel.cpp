@@ -5,6 +5,7 @@
 #include "online/math/sine.h"
 #include "online/math/vector3.h"
 #include "online/track/p_delta.h"
+#include "online/track/rail_point.h"
 
 namespace railstep {
 
@@ -117,12 +118,8 @@ RailPlace guess(const Model& model, const Window& window, double x) noexcept {
 /// Row of the material point (y, z) along the normal. If an irregular rail moves along x, the
 /// height of the steel behind arrives: the row leans back by the slope.
 void fill_row(const Cant& cant, const double* shape, double slope, WheelContact& at) noexcept {
-  const double lever[3] = {1., at.y, at.z};
-  double along[3];
-  to_rail(cant, at.normal, along);
-  along[0] -= slope;
-  for (int i = 0; i < 3; ++i)
-    for (int k = 0; k < 9; ++k) at.row.coefficient[i][k] = shape[i] * (lever[k / 3] * along[k % 3]);
+  const double along[3] = {at.normal[0] - slope, at.normal[1], at.normal[2]};
+  set_point_row(cant, at.y, at.z, shape, along, at.row);
 }
 
 /// d(gap)/d(coordinates) of the wheelset. @param arm  from its centre to the force, m
@@ -137,8 +134,8 @@ void fill_body_row(const Pose& body, const double* arm, WheelContact& at) noexce
 
 /// Finds the contact of wheel `side`: closest approach of its axle and the crown's centre curve,
 /// then the material point of the railhead under the normal.
-WheelContact find_contact(const Model& model, const WheelsetModel& w, int side,
-                          const Configuration& now, double ahead, const Window& window,
+WheelContact find_contact(const Model& model, const WheelsetModel& w, const SignalModel& tread,
+                          int side, const Configuration& now, double ahead, const Window& window,
                           SeatMotions& seats) noexcept {
   const Pose body = pose_of(w, now.u + w.first);
   const double *const centre = body.centre, *const axle = body.axle;
@@ -173,8 +170,8 @@ WheelContact find_contact(const Model& model, const WheelsetModel& w, int side,
   const double x = (at.row.element + .5 * (at.xi + 1.)) * model.element_length +
                    (centre[0] + arm[0] - (q[0] + at.y * q[3] + at.z * q[6]));
   const double rolled = (now.track_offset + model.endless.origin) + now.u[w.first];
-  const Irregularity off = irregularity(model, w.tread[side], side, at.normal,
-                                        (x + now.track_offset) + ahead, rolled + ahead);
+  const Irregularity off =
+      irregularity(model, tread, side, at.normal, (x + now.track_offset) + ahead, rolled + ahead);
   fill_row(model.cant[side], shape, off.rail_slope, at);
   at.x = (at.row.element + .5 * (at.xi + 1.)) * model.element_length;
   at.roll = section_roll(model.cant[side], q);
@@ -266,15 +263,16 @@ Irregularity irregularity(const Model& model, const SignalModel& tread, int rail
   return sum;
 }
 
-void find_contacts(const Model& model, const WheelsetModel& wheelset, const Configuration& at,
+void find_contacts(const Model& model, std::int32_t wheelset, const Configuration& at,
                    WheelContact* sides, double ahead) noexcept {
-  const double* p = at.u + wheelset.first;
+  const WheelsetModel& own = model.wheelset[wheelset];
   Window windows[2];
   SeatMotions seats;
-  gather(model, wheelset.start + p[0], at, windows);
+  gather(model, own.start + at.u[own.first], at, windows);
   for (int side = 0; side < 2; ++side) {
     add_rest(model, side, windows[side]);
-    sides[side] = find_contact(model, wheelset, side, at, ahead, windows[side], seats);
+    sides[side] = find_contact(model, own, model.contact[tread_of(wheelset, side)].tread, side, at,
+                               ahead, windows[side], seats);
   }
 }
 

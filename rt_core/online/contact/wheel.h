@@ -40,7 +40,7 @@ Irregularity irregularity(const Model& model, const SignalModel& tread, int rail
 /// @param at     displacements of track and bodies
 /// @param sides  [2] left, right
 /// @param ahead  m; irregularities are those at this distance ahead
-void find_contacts(const Model& model, const WheelsetModel& wheelset, const Configuration& at,
+void find_contacts(const Model& model, std::int32_t wheelset, const Configuration& at,
                    WheelContact* sides, double ahead = 0.) noexcept;
 
 /// Finds the contacts of a wheelset's left and right flange, each in the rail's section through its

@@ -2,40 +2,11 @@
 
 #include <cmath>
 
+#include "online/track/rail_point.h"
+
 namespace railstep {
 
 namespace {
-
-constexpr double kUp[3] = {0., 0., 1.};
-
-/// Row of a point of the section along a direction of the track.
-void fill_point_row(const Cant& cant, const SectionPoint& point, const double* shape,
-                    const double* direction, RailRow& row) noexcept {
-  const double lever[3] = {1., point.y, point.z};
-  double along[3];
-  to_rail(cant, direction, along);
-  for (int i = 0; i < 3; ++i)
-    for (int k = 0; k < 9; ++k) row.coefficient[i][k] = shape[i] * (lever[k / 3] * along[k % 3]);
-}
-
-/// Row of the roll (a_z - b_y) / 2 of the section.
-void fill_roll_row(const double* shape, RailRow& row) noexcept {
-  for (int i = 0; i < 3; ++i) {
-    for (int k = 0; k < 9; ++k) row.coefficient[i][k] = 0.;
-    row.coefficient[i][5] = .5 * shape[i];
-    row.coefficient[i][7] = -.5 * shape[i];
-  }
-}
-
-/// An element and a place in it. @returns whether there is one
-bool find_place(const Model& model, double x, std::int32_t& element, double& xi) noexcept {
-  const double scaled = x / model.element_length;
-  if (!(scaled >= 0. && scaled <= model.elements)) return false;
-  element = static_cast<std::int32_t>(scaled);
-  if (element == model.elements) element = model.elements - 1;
-  xi = 2. * (scaled - element) - 1.;
-  return true;
-}
 
 void clear(bool on_rail, int side, std::int32_t element, WheelSeatRow* seat,
            RailForce* place) noexcept {
@@ -54,8 +25,8 @@ constexpr double kAlong[2][3] = {{0., 1., 0.}, {0., 0., 1.}};  // of a seat's ro
 void fill_seat_rows(const Model& model, const SectionPoint& centre, int side, const double* shape,
                     WheelSeatRow* seat) noexcept {
   for (int d = 0; d < 2; ++d)
-    fill_point_row(model.cant[side], centre, shape, kAlong[d], seat[d].row);
-  fill_roll_row(shape, seat[2].row);
+    set_point_row(model.cant[side], centre.y, centre.z, shape, kAlong[d], seat[d].row);
+  set_roll_row(shape, seat[2].row);
 }
 
 /// Whether no section of any line strains, so that it moves as its axis and its roll do.
@@ -144,9 +115,7 @@ SeatLean seat_lean(const Model& model, const RollingContact& contact, int side,
 
 void locate_mirrored_seats(const Model& model, const Configuration& at, const RunnerModel& runner,
                            double x, WheelSeatRow* seat, RailForce* place) noexcept {
-  std::int32_t element = 0;
-  double xi = 0.;
-  const bool on_rail = find_place(model, x, element, xi);
+  const auto [on_rail, element, xi] = place_on_rails(model, x);
   for (int side = 0; side < 2; ++side) {
     clear(on_rail, side, element, seat + kWheelSeatRows * side, place + kWheelSeatRows * side);
     if (on_rail)
@@ -179,17 +148,14 @@ void locate_mirrored_seats(const Model& model, const Configuration& at, const Ru
 void locate_wheel_seat(const Model& model, const Configuration& at, const RunnerModel& runner,
                        double x, int side, SeatMotions& seats, WheelSeatRow* seat,
                        RailForce* place) noexcept {
-  std::int32_t element = 0;
-  double xi = 0.;
-  const bool on_rail = find_place(model, x, element, xi);
+  const auto [on_rail, element, xi] = place_on_rails(model, x);
   clear(on_rail, side, element, seat, place);
   if (!on_rail) return;
   double shape[3];
   shape_functions(xi, shape);
   const SectionPoint centre = crown_centre(model, runner.contact, side);
   fill_seat_rows(model, centre, side, shape, seat);
-  double roll = 0.;
-  for (std::int32_t l = 0; l < model.lines; ++l) roll += motion(model.line[l], seat[2].row, at);
+  const double roll = motion(model, seat[2].row, at);
   seat[1].rise = seat_lean(model, runner.contact, side, roll).rise -
                  add_p_delta(model, at, roll, xi, centre.y, centre.z, kUp, seat[1].row, seats);
   place[1] = {model, runner.load_point[side], element, xi, 0.};

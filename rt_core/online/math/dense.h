@@ -54,29 +54,27 @@ enum class SmallSolve : unsigned char {
 
 /// Solves A x = b by LDL' without pivoting, A symmetric positive definite, n >= 0.
 ///
-/// @param A  [n][n], lower triangle read; overwritten by L below and 1/D on the diagonal
+/// @param A  [n][n], upper triangle read; overwritten by L' above and 1/D on the diagonal
 /// @param b  [n], b in, x out
-/// Unless it returns `solved`, b is meaningless. Work: n^3 / 3 multiplications and as many
-/// additions.
+/// Unless it returns `solved`, b is meaningless. Work: n^3 / 6 multiplications and as many
+/// additions. Each row is subtracted from all behind it at once, so that no sum waits for itself.
 [[nodiscard]] inline SmallSolve solve_small(double* A, double* b, int n) noexcept {
-  for (int j = 0; j < n; ++j) {
-    double* row = A + j * n;
-    // Row j of L is still multiplied by D; it is divided with the pivot, which saves a pass.
-    for (int k = 0; k < j; ++k)
-      for (int m = 0; m < k; ++m) row[k] -= row[m] * A[k * n + m];
-    for (int k = 0; k < j; ++k) {
-      const double scaled = row[k] * A[k * n + k];
-      row[j] -= row[k] * scaled;
-      row[k] = scaled;
+  for (int m = 0; m < n; ++m) {
+    double* const row = A + m * n;
+    if (!(row[m] > 0.0)) return row[m] <= 0.0 ? SmallSolve::indefinite : SmallSolve::not_finite;
+    row[m] = 1.0 / row[m];
+    for (int j = m + 1; j < n; ++j) {
+      const double scaled = row[j] * row[m];
+      double* const behind = A + j * n;
+#pragma omp simd
+      for (int k = j; k < n; ++k) behind[k] -= row[k] * scaled;
+      row[j] = scaled;  // the rows behind j do not read it
+      b[j] -= scaled * b[m];
     }
-    if (!(row[j] > 0.0)) return row[j] <= 0.0 ? SmallSolve::indefinite : SmallSolve::not_finite;
-    row[j] = 1.0 / row[j];
   }
-  for (int j = 0; j < n; ++j)
-    for (int k = 0; k < j; ++k) b[j] -= A[j * n + k] * b[k];
   for (int j = 0; j < n; ++j) b[j] *= A[j * n + j];
   for (int j = n - 1; j >= 0; --j)
-    for (int k = j + 1; k < n; ++k) b[j] -= A[k * n + j] * b[k];
+    for (int k = j + 1; k < n; ++k) b[j] -= A[j * n + k] * b[k];
   return SmallSolve::solved;
 }
 

@@ -48,10 +48,6 @@ constexpr ContactId other_tread(ContactId tread) noexcept { return tread ^ 1; }
 inline ContactId vehicle_contact(const Model& model, std::int32_t vehicle_wheel) noexcept {
   return tread_count(model) + vehicle_wheel;
 }
-/// The reverse: a wheel's number among the wheels of all vehicles.
-inline std::int32_t among_vehicle_wheels(const Model& model, ContactId contact) noexcept {
-  return contact - tread_count(model);
-}
 /// A flange's number among all flanges. @param pair  the model's FlangeModel
 constexpr std::int32_t flange_number(std::int32_t pair, std::int32_t side) noexcept {
   return 2 * pair + side;
@@ -59,66 +55,41 @@ constexpr std::int32_t flange_number(std::int32_t pair, std::int32_t side) noexc
 inline ContactId flange_contact(const Model& model, std::int32_t flange) noexcept {
   return wheel_count(model) + flange;
 }
-/// The reverse: a flange's number among all flanges.
-inline std::int32_t among_flanges(const Model& model, ContactId contact) noexcept {
-  return contact - wheel_count(model);
-}
 
 inline bool is_flange(const Model& model, ContactId contact) noexcept {
-  return contact >= wheel_count(model);
+  return model.contact[contact].kind == ContactKind::flange;
 }
-/// Whether a contact is a tread or a flange of a wheelset; else it is a vehicle's wheel.
-inline bool is_of_wheelset(const Model& model, ContactId contact) noexcept {
-  return contact < tread_count(model) || is_flange(model, contact);
-}
-/// The pair of flanges that a contact belongs to.
-inline const FlangeModel& flange_of(const Model& model, ContactId contact) noexcept {
-  return model.flange[among_flanges(model, contact) / 2];
-}
-/// The vehicle's wheel at a contact.
-inline const VehicleWheel& vehicle_wheel(const Model& model, ContactId contact) noexcept {
-  return model.vehicle_wheel[among_vehicle_wheels(model, contact)];
-}
-/// The number of the wheelset to which a tread or flange belongs.
-inline std::int32_t wheelset_of(const Model& model, ContactId contact) noexcept {
-  return is_flange(model, contact) ? flange_of(model, contact).wheelset : contact / 2;
-}
-/// The rail that a contact is on: 0 left, 1 right. On a wheelset it is the contact's side.
-inline std::int32_t rail_of(const Model& model, ContactId contact) noexcept {
-  if (is_flange(model, contact)) return among_flanges(model, contact) % 2;
-  return is_of_wheelset(model, contact) ? contact % 2 : vehicle_wheel(model, contact).rail;
+/// Whether a contact is the upright wheel of a vehicle; else it is of a wheelset.
+inline bool is_upright(const Model& model, ContactId contact) noexcept {
+  return model.contact[contact].kind == ContactKind::wheel;
 }
 /// The bodies that carry a contact.
 inline const SuspendedModel& bodies_of(const Model& model, ContactId contact) noexcept {
-  if (is_of_wheelset(model, contact)) return model.wheelset[wheelset_of(model, contact)];
-  return model.vehicle[vehicle_wheel(model, contact).vehicle];
+  const ContactModel& own = model.contact[contact];
+  if (is_upright(model, contact)) return model.vehicle[own.bodies];
+  return model.wheelset[own.bodies];
 }
-/// The height of a vehicle's wheel over the coordinates of the vehicle, [size].
-inline const double* row_of_wheel(const Model& model, ContactId wheel) noexcept {
-  const VehicleModel& own = model.vehicle[vehicle_wheel(model, wheel).vehicle];
-  return own.row + (among_vehicle_wheels(model, wheel) - own.first_wheel) * own.size;
-}
-/// Rail and height at which a contact's vertical force acts; kNoLoadPoint for a flange.
-inline std::int32_t load_point_of(const Model& model, ContactId contact) noexcept {
-  if (is_flange(model, contact)) return kNoLoadPoint;
-  return is_of_wheelset(model, contact)
-             ? model.wheelset[wheelset_of(model, contact)].load_point[rail_of(model, contact)]
-             : vehicle_wheel(model, contact).load_point;
+
+/// The place of a contact at t = 0 along the model's elements, m.
+inline double place_of(const Model& model, ContactId contact) noexcept {
+  return bodies_of(model, contact).start + model.contact[contact].place;
 }
 
 /// The contacts of one wheelset: its treads and, if it has them, its flanges.
 struct WheelsetContacts {
-  int count;        // 2 or 4
-  ContactId at[4];  // left tread, right tread, left flange, right flange
+  int count;          // 2 or 4
+  std::int32_t pair;  // the model's FlangeModel; -1: it has none
+  ContactId at[4];    // left tread, right tread, left flange, right flange
 };
 inline WheelsetContacts contacts_of(const Model& model, std::int32_t wheelset) noexcept {
   const ContactId left = tread_of(wheelset, 0), right = tread_of(wheelset, 1);
   for (std::int32_t pair = 0; pair < model.flanges; ++pair)
     if (model.flange[pair].wheelset == wheelset)
       return {4,
+              pair,
               {left, right, flange_contact(model, flange_number(pair, 0)),
                flange_contact(model, flange_number(pair, 1))}};
-  return {2, {left, right, 0, 0}};
+  return {2, -1, {left, right, 0, 0}};
 }
 
 }  // namespace railstep

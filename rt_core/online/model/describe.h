@@ -153,29 +153,18 @@ void describe(Archive& a, BodyForce& f, std::int32_t directions) {
 }
 
 template <typename Archive>
-void describe(Archive& a, ContactModel& c) {
+void describe(Archive& a, ContactLaw& c) {
   for (double* x : {&c.hertz, &c.stiffness, &c.damping}) a.real(*x);
 }
 
 template <typename Archive>
 void describe(Archive& a, FlangeModel& f) {
   a.count(f.wheelset, kMaxWheelsets - 1);
-  describe(a, f.contact);
   for (double* pair : {f.normal, f.point[0], f.point[1], f.gauge[0], f.gauge[1]}) {
     a.real(pair[0]);
     a.real(pair[1]);
   }
   a.real(f.tip);
-}
-
-template <typename Archive>
-void describe(Archive& a, VehicleWheel& w) {
-  a.count(w.vehicle, kMaxVehicles - 1);
-  a.count(w.rail, 1);
-  a.real(w.place);
-  describe(a, w.contact);
-  a.count(w.load_point, kMaxLoadPoints - 1);
-  describe(a, w.tread);
 }
 
 template <typename Archive>
@@ -194,25 +183,31 @@ void describe(Archive& a, SuspendedModel& b, std::int32_t most) {
 template <typename Archive>
 void describe(Archive& a, WheelsetModel& w) {
   describe(a, w, kMotions);
-  for (double* x : {&w.radius, &w.tread_half_width, &w.rest_z, &w.hertz[0], &w.hertz[1],
-                    &w.tolerance, &w.alpha, &w.beta})
+  for (double* x : {&w.radius, &w.tread_half_width, &w.rest_z, &w.tolerance, &w.alpha, &w.beta})
     a.real(*x);
   std::int32_t guide = static_cast<std::int32_t>(w.guide);
   a.count(guide, static_cast<std::int32_t>(Guide::elimination));
   w.guide = static_cast<Guide>(guide);
   a.count(w.cap, kMostGuideIterations);
-  for (std::int32_t& point : w.load_point) a.count(point, kMaxLoadPoints - 1);
-  for (SignalModel& tread : w.tread) describe(a, tread);
 }
 
+/// The bodies of all contacts must be known.
 template <typename Archive>
-void describe(Archive& a, VehicleModel& v) {
-  describe(a, v, kMaxVehicleUnknowns);
-  a.count(v.first_wheel, kMaxWheels);
-  a.count(v.wheels, kMaxWheels);
-  const std::int64_t n = v.size, wheels = v.wheels;
-  for (const double** of : {&v.row, &v.response}) a.reals(*of, wheels * n);
-  a.reals(v.compliance, wheels * wheels);
+void describe(Archive& a, ContactModel& c, const Model& m) {
+  std::int32_t kind = static_cast<std::int32_t>(c.kind);
+  a.count(kind, static_cast<std::int32_t>(ContactKind::wheel));
+  c.kind = static_cast<ContactKind>(kind);
+  const bool upright = c.kind == ContactKind::wheel;
+  a.count(c.bodies, (upright ? kMaxVehicles : kMaxWheelsets) - 1);
+  a.count(c.rail, 1);
+  describe(a, c.law);
+  std::int32_t load_point = c.load_point + 1;
+  a.count(load_point, kMaxLoadPoints);
+  c.load_point = load_point - 1;
+  describe(a, c.tread);
+  a.real(c.place);
+  const std::int64_t n = upright ? m.vehicle[c.bodies].size : 0;
+  for (const double** of : {&c.row, &c.moved}) a.reals(*of, n);
 }
 
 template <typename Archive>
@@ -330,10 +325,11 @@ void describe_track(Archive& a, Model& m) {
   for (std::int32_t i = 0; i < m.lines; ++i) describe(a, m, i);
   for (std::int32_t i = 0; i < m.loads; ++i) describe(a, m.load[i]);
   for (std::int32_t i = 0; i < m.wheelsets; ++i) describe(a, m.wheelset[i]);
-  a.count(m.flanges, m.wheelsets);
+  const std::int32_t room = (kMaxWheels - wheel_count(m)) / 2;
+  a.count(m.flanges, m.wheelsets < room ? m.wheelsets : room);
   for (std::int32_t i = 0; i < m.flanges; ++i) describe(a, m.flange[i]);
-  for (std::int32_t i = 0; i < m.vehicles; ++i) describe(a, m.vehicle[i]);
-  for (std::int32_t i = 0; i < m.vehicle_wheels; ++i) describe(a, m.vehicle_wheel[i]);
+  for (std::int32_t i = 0; i < m.vehicles; ++i) describe(a, m.vehicle[i], kMaxVehicleUnknowns);
+  for (ContactId i = 0; i < contact_count(m); ++i) describe(a, m.contact[i], m);
   a.count(m.runners, kMaxRunners);
   a.count(m.runner_wheelsets, kMaxRunnerWheelsets);
   a.count(m.runner_stops, kMaxRunnerStops);

@@ -165,8 +165,7 @@ bool check_is_valid(const BlockHeader& h) noexcept {
 bool scheme_is_valid(const Model& m) noexcept {
   if (m.scheme.mean != 0 && (m.form == Form::banded || m.scheme.theta != 1.)) return false;
   if (!(m.scheme.stage_fraction >= 0.) || !(m.scheme.stage_fraction < 1.)) return false;
-  return m.scheme.stage_fraction == 0. ||
-         (m.form == Form::banded && m.system.unknowns == 0 && m.external_wheels == 0);
+  return m.scheme.stage_fraction == 0. || (m.form == Form::banded && m.system.unknowns == 0);
 }
 
 /// Flops that a step of any model of these sizes has at its caps, most of them of a track alone

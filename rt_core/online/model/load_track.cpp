@@ -1,5 +1,6 @@
 #include "online/model/load_track.h"
 
+#include "online/math/dense.h"
 #include "online/math/finite.h"
 #include "online/math/newton.h"
 #include "online/model/external_input.h"
@@ -43,7 +44,7 @@ bool diagonal_is_not_negative(const double* matrix, std::int64_t n) noexcept {
 }
 
 /// Whether the force grows with the penetration.
-bool contact_is_valid(const ContactModel& c) noexcept {
+bool contact_is_valid(const ContactLaw& c) noexcept {
   return c.hertz > 0. || (c.stiffness > 0. && c.damping >= 0.);
 }
 
@@ -101,23 +102,19 @@ bool load_is_valid(const LoadModel& l) noexcept {
   return ahead && travel_is_valid(l.travel);
 }
 
-/// External wheels need one step a frame; each has its own inputs.
+/// Each external wheel has its own inputs.
 bool external_wheels_are_valid(const Model& m) noexcept {
-  if (m.external_wheels == 0) return true;
-  if (m.steps_per_frame != 1) return false;
   for (std::int32_t i = 0; i < m.external_wheels; ++i)
     if (m.external_wheel[i].input + kExternalInputs > m.inputs) return false;
   return true;
 }
 
-/// Flanges are in the order of their wheelsets, one pair each, and count as wheels among the ports.
+/// Flanges are in the order of their wheelsets, one pair each.
 bool flanges_are_valid(const Model& m) noexcept {
-  if (contact_count(m) > kMaxWheels) return false;
   for (std::int32_t i = 0; i < m.flanges; ++i) {
     const FlangeModel& f = m.flange[i];
     if (f.wheelset >= m.wheelsets || (i > 0 && f.wheelset <= m.flange[i - 1].wheelset))
       return false;
-    if (!contact_is_valid(f.contact)) return false;
   }
   return true;
 }
@@ -132,15 +129,12 @@ bool suspended_is_valid(const Model& m, const SuspendedModel& b) noexcept {
 
 bool wheelset_is_valid(const Model& m, const WheelsetModel& w) noexcept {
   return w.size == kMotions && suspended_is_valid(m, w) && w.cap >= 1 && w.radius > 0. &&
-         are_above_zero(w.mass, kMotions) && are_above_zero(w.hertz, 2) &&
-         signal_is_valid(w.tread[0]) && signal_is_valid(w.tread[1]);
+         are_above_zero(w.mass, kMotions);
 }
 
-bool vehicle_is_valid(const Model& m, const VehicleModel& v) noexcept {
-  return suspended_is_valid(m, v) && v.wheels >= 1 &&
-         v.first_wheel + v.wheels <= m.vehicle_wheels && v.row && v.response && v.compliance &&
-         are_above_zero(v.mass, v.size) && diagonal_is_above_zero(v.inverse, v.size) &&
-         diagonal_is_above_zero(v.compliance, v.wheels);
+bool vehicle_is_valid(const Model& m, const SuspendedModel& v) noexcept {
+  return suspended_is_valid(m, v) && are_above_zero(v.mass, v.size) &&
+         diagonal_is_above_zero(v.inverse, v.size);
 }
 
 bool contact_is_valid(const RollingContact& c) noexcept {
@@ -187,13 +181,24 @@ bool runners_are_valid(const Model& m) noexcept {
          (m.lines == 0 || all.wheelsets <= kMaxSeatedWheelsets);
 }
 
-/// Whether a wheel belongs to its vehicle, whose matrices have a row for it.
-bool wheel_is_valid(const Model& m, std::int32_t i) noexcept {
-  const VehicleWheel& wheel = m.vehicle_wheel[i];
-  if (wheel.vehicle >= m.vehicles) return false;
-  const VehicleModel& own = m.vehicle[wheel.vehicle];
-  return i >= own.first_wheel && i < own.first_wheel + own.wheels && signal_is_valid(wheel.tread) &&
-         contact_is_valid(wheel.contact);
+/// Whether a contact of each kind is where its number says, with bodies that have it.
+bool has_its_place(const Model& m, ContactId i) noexcept {
+  const ContactModel& c = m.contact[i];
+  if (i < tread_count(m))
+    return c.kind == ContactKind::tread && i == tread_of(c.bodies, c.rail) && c.law.hertz > 0.;
+  if (i >= wheel_count(m)) {
+    const std::int32_t pair = (i - wheel_count(m)) / 2;
+    return c.kind == ContactKind::flange && i == flange_contact(m, flange_number(pair, c.rail)) &&
+           c.bodies == m.flange[pair].wheelset;
+  }
+  return c.kind == ContactKind::wheel && c.bodies < m.vehicles && c.row && c.moved &&
+         dot(c.row, c.moved, m.vehicle[c.bodies].size) > 0.;
+}
+
+bool contact_is_valid(const Model& m, ContactId i) noexcept {
+  const ContactModel& c = m.contact[i];
+  return has_its_place(m, i) && contact_is_valid(c.law) && signal_is_valid(c.tread) &&
+         (is_flange(m, i) ? c.load_point == kNoLoadPoint : c.load_point >= 0);
 }
 
 /// Values may be a little below 0, where elements yield more than a rail does. Their sum with the
@@ -206,12 +211,8 @@ bool residual_is_valid(const Model& m) noexcept {
   if (tables && (r.points < 3 || r.elements < 1)) return false;
   for (std::int32_t i = 0; i < m.loads && tables; ++i)
     if (m.load[i].load_point >= r.load_points) return false;
-  for (std::int32_t i = 0; i < m.wheelsets && tables; ++i)
-    if (m.wheelset[i].load_point[0] >= r.load_points ||
-        m.wheelset[i].load_point[1] >= r.load_points)
-      return false;
-  for (std::int32_t i = 0; i < m.vehicle_wheels && tables; ++i)
-    if (m.vehicle_wheel[i].load_point >= r.load_points) return false;
+  for (ContactId i = 0; i < contact_count(m) && tables; ++i)
+    if (m.contact[i].load_point >= r.load_points) return false;
   for (std::int32_t i = 0; i < m.runners && tables; ++i)
     if (m.runner[i].load_point[0] >= r.load_points || m.runner[i].load_point[1] >= r.load_points)
       return false;
@@ -293,8 +294,8 @@ bool track_is_valid(const Model& m) noexcept {
   if (!flanges_are_valid(m)) return false;
   for (std::int32_t i = 0; i < m.vehicles; ++i)
     if (!vehicle_is_valid(m, m.vehicle[i])) return false;
-  for (std::int32_t i = 0; i < m.vehicle_wheels; ++i)
-    if (!wheel_is_valid(m, i)) return false;
+  for (ContactId i = 0; i < contact_count(m); ++i)
+    if (!contact_is_valid(m, i)) return false;
   if (!runners_are_valid(m)) return false;
   for (std::int32_t i = 0; i < m.signals; ++i)
     if (m.signal[i].direction < 1 || !signal_is_valid(m.signal[i].signal)) return false;

@@ -144,55 +144,46 @@ inline constexpr double kGuidePenalty = 1e3;
 /// 0 where the guide prescribes a coordinate, and with the penalty where that is how it holds.
 struct WheelsetModel : SuspendedModel {
   double radius, tread_half_width;
-  double rest_z;    // height of the centre over the left rail's axis when it touches, m
-  double hertz[2];  // C of P = C d^1.5 on left and right rail, N/m^1.5
+  double rest_z;  // height of the centre over the left rail's axis when it touches, m
   Guide guide;
-  std::int32_t cap;            // iterations of the augmented Lagrangian
-  double tolerance;            // m and rad
-  double alpha, beta;          // of Baumgarte, 1/s
-  std::int32_t load_point[2];  // on left and right rail: height at which its vertical force acts
-  SignalModel tread[2];        // of the left and right wheel: deviation from `radius` over the
-  // distance rolled
+  std::int32_t cap;    // iterations of the augmented Lagrangian
+  double tolerance;    // m and rad
+  double alpha, beta;  // of Baumgarte, 1/s
 };
 
-/// Contact law of a vehicle's wheel, d the penetration:
+/// Law of a contact along its normal, d the penetration:
 ///   hertz d^1.5 for d > 0      for a Hertz contact (hertz > 0), else
-///   stiffness d + damping d'   for any d: it pulls too (bilateral).
-struct ContactModel {
+///   stiffness d + damping d'   for d > 0, of a wheel for any d: it pulls too (bilateral).
+struct ContactLaw {
   double hertz;               // N/m^1.5
   double stiffness, damping;  // N/m, N s/m
 };
 
 /// The flanges of a wheelset. Each face is straight across the rail and rotates with the wheelset.
-/// The gauge face is a point of the rail's section, at which both are loaded. The law is that of
-/// ContactModel for d > 0; a flange never pulls.
+/// The gauge face is a point of the rail's section, at which both are loaded.
 struct FlangeModel {
   std::int32_t wheelset;
-  ContactModel contact;
   double normal[2];    // of the left face at rest, from the rail to the wheel: y, z; right: -y, z
   double point[2][2];  // of left and right face, from the wheelset's centre: y, z, m
   double gauge[2][2];  // gauge face of left and right rail, from the rail's axis: y, z, m
   double tip;          // z of the flanges' tips from the centre, m: no contact with rails below it
 };
 
-/// A wheel of a vehicle. Beyond the rail's ends it rolls on level, rigid ground in line with the
-/// rail at rest.
-struct VehicleWheel {
-  std::int32_t vehicle, rail;  // rail: 0 left, 1 right
-  double place;                // from the vehicle's origin, m
-  ContactModel contact;
+/// What touches a rail: the tread or a flange of a wheelset, or the upright wheel of a vehicle.
+enum class ContactKind : std::int32_t { tread, flange, wheel };
+
+/// A contact with a rail. Beyond the rail's ends an upright wheel rolls on level, rigid ground in
+/// line with the rail at rest.
+struct ContactModel {
+  ContactKind kind;
+  std::int32_t bodies, rail;  // number of its wheelset or vehicle; 0 left, 1 right
+  ContactLaw law;
   std::int32_t load_point;  // rail and height at which its vertical force acts
   SignalModel tread;        // deviation of its radius over the distance rolled
-};
-
-/// A vehicle that bounces and pitches over one rail. q counts from where the wheels touch a rail at
-/// rest without a force in any spring, B q is the height of the wheels, and B' f are the rail's
-/// forces f on them.
-struct VehicleModel : SuspendedModel {
-  std::int32_t first_wheel, wheels;  // among the vehicles' wheels
-  const double* row;                 // [wheels][size] B
-  const double* response;            // [wheels][size] inverse B'
-  const double* compliance;          // [wheels][wheels] B inverse B', m/N
+  double place;             // of an upright wheel from its vehicle's origin, m
+  /// Of an upright wheel, [size] of its vehicle: its height over the coordinates, and these moved
+  /// by a unit force up.
+  const double *row, *moved;
 };
 
 /// Residual flexibility between ports of two kinds: the first in element e at point p, the second
@@ -325,8 +316,10 @@ struct Model {
   LoadModel load[kMaxLoads];
   WheelsetModel wheelset[kMaxWheelsets];
   FlangeModel flange[kMaxWheelsets];  // by rising wheelset
-  VehicleModel vehicle[kMaxVehicles];
-  VehicleWheel vehicle_wheel[kMaxWheels];
+  /// Vehicles that bounce and pitch over one rail. Their coordinates count from where the wheels
+  /// touch a rail at rest without a force in any spring.
+  SuspendedModel vehicle[kMaxVehicles];
+  ContactModel contact[kMaxWheels];  // by ContactId
   RailSignal signal[kMaxSignals];
   std::int32_t runners, runner_wheelsets, runner_stops, runner_rods;  // the latter of all runners
   RunnerModel runner[kMaxRunners];

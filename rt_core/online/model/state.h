@@ -91,7 +91,8 @@ inline std::int32_t port_count(const Model& model) noexcept {
 inline std::int64_t beside_doubles(const Model& model) noexcept {
   const std::int64_t rows = 9LL * model.system.ports, ports = port_count(model);
   if (rows == 0 || ports == 0) return 0;
-  return rows * (4 + 2 * ports) + (model.form == Form::banded ? model.line_unknowns : 0);
+  return rows * (4 + 2 * ports) + 2 * ports +
+         (model.form == Form::banded ? model.line_unknowns : 0);
 }
 
 /// Scratch, meaningless between steps. The caller owns the memory: workspace_doubles() of it.

@@ -48,7 +48,7 @@ void move_freely(const RunnerStage& at, State& s, const Workspace& w, double* u)
   const RunnerModel& r = at.runner;
   double force[kMaxRunnerUnknowns];
   find_frame_forces(at, s, w, force);
-  move_freely(at.model, r, at.time(1.), s, w, force, u);
+  move_freely(at.model, r, at.time(at.held), s, w, force, u);
   double* const reaction = reactions_of(at.model, s, r);
   for (std::int32_t c = 0; c < constraint_count(r); ++c)
     reaction[c] = dot(r.reaction + std::ptrdiff_t{r.size} * c, force, r.size);

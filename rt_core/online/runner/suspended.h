@@ -5,8 +5,8 @@ namespace railstep {
 
 /// Displacements of suspended bodies at a stage's end, without what acts at their interfaces:
 ///   (s K + s kv C + kg M) q = M kg u* + C (s (kv u* - v*) - (1 - s) v0) - (1 - s) K u0 + rest
-///                             + forces of tables and inputs at the stage's end + other forces.
-/// @param time   s; of the stage's end
+///                             + forces of tables and inputs at the fraction s + other forces.
+/// @param time   s; of that fraction of the stage
 /// @param force  [size] other forces, N and N m; overwritten
 /// @param u      [size] out
 void move_freely(const Model& model, const SuspendedModel& bodies, double time, const State& s,

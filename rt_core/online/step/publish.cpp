@@ -120,26 +120,27 @@ void publish(const Model& model, const State& state, Outputs& outputs) noexcept 
     outputs.load_x[i] = at.x;
     outputs.load_place[i] = at.place;
     outputs.load_force[i] = at.force;
-    outputs.load_deflection[i] = at.on_rail ? deflection(model, at, standing(model, state)) : 0.;
+    outputs.load_deflection[i] = at.on_rail ? motion(model, at.row, standing(model, state)) : 0.;
     if (!at.on_rail) outputs.status = outputs.status | Status::off_rail;
   }
   RailForce force[kMaxRailForces];
   const int count = rail_forces(model, outputs, force);
-  for (std::int32_t i = 0; i < model.loads; ++i)
-    outputs.load_deflection[i] += residual_displacement(model, force, count, i);
+  double moved[kMaxRailForces];
+  residual_displacements(model, force, count,
+                         model.loads + wheel_count(model) + model.external_wheels, moved);
+  for (std::int32_t i = 0; i < model.loads; ++i) outputs.load_deflection[i] += moved[i];
   for (std::int32_t i = 0; i < wheel_count(model); ++i) {
     const RailForce& own = force[model.loads + i];
     outputs.contact_rail_z[i] = 0.;
     if (!outputs.contact_on_rail[i]) continue;
     outputs.contact_rail_z[i] =
-        axis_height(model, rail_of(model, i), own.element, own.xi, standing(model, state)) +
-        residual_displacement(model, force, count, model.loads + i) +
+        axis_height(model, model.contact[i].rail, own.element, own.xi, standing(model, state)) +
+        moved[model.loads + i] +
         own.force * (residual_axis(model, own) - residual_under(model, own));
   }
   for (std::int32_t i = 0; i < model.external_wheels; ++i)
     if (outputs.external_on_rail[i])
-      outputs.external_displacement[i][2] +=
-          residual_displacement(model, force, count, model.loads + wheel_count(model) + i);
+      outputs.external_displacement[i][2] += moved[model.loads + wheel_count(model) + i];
   outputs.first_bad_unknown = first_bad(model, state, outputs);
   if (outputs.first_bad_unknown >= 0) outputs.status = outputs.status | Status::nonfinite_state;
 }
@@ -148,10 +149,8 @@ void start_outputs(const Model& model, const State& state, Outputs& outputs) noe
   start_frame(model, state, outputs);
   WheelContact contact[kMaxWheels];
   for (std::int32_t b = 0; b < model.wheelsets; ++b)
-    find_contacts(model, model.wheelset[b], standing(model, state), contact + tread_of(b, 0));
-  for (std::int32_t v = 0; v < model.vehicles; ++v)
-    find_vehicle_contacts(model, model.vehicle[v], state.steps, 0., standing(model, state),
-                          contact);
+    find_contacts(model, b, standing(model, state), contact + tread_of(b, 0));
+  find_vehicle_contacts(model, state.steps, 0., standing(model, state), contact);
   for (std::int32_t f = 0; f < model.flanges; ++f)
     find_flanges(model, model.flange[f], standing(model, state),
                  contact + flange_contact(model, flange_number(f, 0)));

@@ -157,7 +157,9 @@ void step_system(const Model& model, State& s, Workspace& w, Outputs& outputs) n
 bool has_ports(const Model& model) noexcept { return port_count(model) > 0; }
 
 /// The first of two stages: afterwards the state is at its end, and the step's start in `w.start`.
-void make_first_stage(const Model& model, State& state, Workspace& w, Outputs& outputs) noexcept {
+/// Forces of external wheels hold for both.
+void make_first_stage(const Model& model, State& state, Workspace& w, Outputs& outputs,
+                      ExternalContact* external) noexcept {
   const Stage stage = first_stage(model.scheme, state.steps + 1);
 #pragma omp simd
   for (std::int32_t i = 0; i < model.unknowns; ++i) {
@@ -166,8 +168,9 @@ void make_first_stage(const Model& model, State& state, Workspace& w, Outputs& o
   }
   predict(model, state, w);
   advance_track(model, stage, state, w);
+  if (model.external_wheels > 0) apply_external_forces(model, stage.step, state, w, external);
   if (has_ports(model))
-    collect_solve(couple(model, stage, nullptr, state, w), outputs);
+    collect_solve(couple(model, stage, external, state, w), outputs);
   else
     solve_bands(model, w);
   step_runners(model, stage, state, w, outputs);
@@ -180,13 +183,13 @@ void make_step(const Model& model, State& state, Workspace& w, Outputs& outputs,
   shift_window(model, state.steps + 1, state, w);
   const Stage stage = last_stage(model.scheme, state.steps + 1);
   if (model.scheme.stage_fraction > 0.) {
-    make_first_stage(model, state, w, outputs);
+    make_first_stage(model, state, w, outputs, external);
     predict_last(model, state, w);
   } else {
     predict(model, state, w);
   }
   advance_track(model, stage, state, w);
-  if (model.external_wheels > 0) apply_external_forces(model, state.steps + 1, state, w, external);
+  if (model.external_wheels > 0) apply_external_forces(model, stage.step, state, w, external);
   if (has_ports(model)) {
     const CoupleResult met = couple(model, stage, external, state, w);
     collect(model, state, met, outputs);
@@ -254,7 +257,8 @@ Status try_frame(const Model& model, const double* inputs, const State& state, W
           external_row(n, d) == row ? kTrialForce : 0.;
   Outputs outputs;
   start_frame(model, tried, outputs);
-  make_step(model, tried, workspace, outputs, external);
+  for (std::int32_t n = 0; n < model.steps_per_frame; ++n)
+    make_step(model, tried, workspace, outputs, external);
   publish_external(model, tried, external, outputs);
   publish(model, tried, outputs);
   for (std::int32_t n = 0; n < model.external_wheels; ++n)
@@ -262,7 +266,7 @@ Status try_frame(const Model& model, const double* inputs, const State& state, W
   return met | outputs.status;
 }
 
-/// Compliance beside other contacts: these give way too, so that each force is tried.
+/// Compliance where one solve does not give it: each force is tried.
 /// @param external  [external_wheels] overwritten
 void try_compliance(const Model& model, const double* inputs, const State& state,
                     Workspace& workspace, ExternalContact* external, const double* free,
@@ -284,7 +288,9 @@ void try_compliance(const Model& model, const double* inputs, const State& state
                                  Workspace& workspace, double* free, double* compliance) noexcept {
   ExternalContact external[kMaxExternalWheels];
   const Status met = try_frame(model, inputs, state, workspace, -1, external, free);
-  if (has_ports(model) || model.runners > 0 || model.system.ports > 0)
+  const bool is_one_solve = model.steps_per_frame == 1 && model.scheme.stage_fraction == 0.;
+  // Other contacts give way too.
+  if (!is_one_solve || has_ports(model) || model.runners > 0 || model.system.ports > 0)
     try_compliance(model, inputs, state, workspace, external, free, compliance);
   else
     external_compliance(model, external, workspace, compliance);

@@ -55,22 +55,6 @@ double nodal_value(const LineModel& line, std::int32_t rail, ElementNode node, i
   return unknown < 0 ? 0. : unknown_value(line, unknown, at);
 }
 
-double axis_height(const Model& model, std::int32_t rail, std::int32_t element, double xi,
-                   const Configuration& at) noexcept {
-  double shape[3], sum = 0.;
-  shape_functions(xi, shape);
-  const Cant& cant = model.cant[rail];
-  for (std::int32_t l = 0; l < model.lines; ++l)
-    for (int i = 0; i < 3; ++i) {
-      sum += shape[i] * (cant.cosine * weight_of(model.line[l], rail, 2)) *
-             nodal_value(model.line[l], rail, {element, i}, 2, at);
-      if (cant.sine == 0.) continue;
-      sum += shape[i] * (cant.sine * weight_of(model.line[l], rail, 1)) *
-             nodal_value(model.line[l], rail, {element, i}, 1, at);
-    }
-  return sum;
-}
-
 bool carries(const LineModel& line, const RailRow& row) noexcept {
   if (line.rail_factor[row.rail] == 0.) return false;
   // Most rows carry an unknown of the first node.
@@ -84,14 +68,6 @@ bool carries(const LineModel& line, const RailRow& row) noexcept {
     for (int k = 5; k <= 7; k += 2)
       if (table[table_place(row.seat[s], k)] >= 0) return true;
   return false;
-}
-
-double motion(const LineModel& line, const RailRow& row, const Configuration& at) noexcept {
-  double sum = 0.;
-  for_carried(line, row, [&](std::int32_t unknown, double weight) noexcept {
-    sum += weight * unknown_value(line, unknown, at);
-  });
-  return sum;
 }
 
 void spread(const LineModel& line, const RailRow& row, double force, double* rhs) noexcept {
@@ -112,6 +88,55 @@ void carry(const LineModel& line, const RailRow& row, CarriedRow& carried) noexc
     carried.unknown[carried.count] = unknown;
     carried.weight[carried.count++] = weight;
   });
+}
+
+namespace {
+
+/// Displacement by three unknowns of a condensed line; its modes are read once for all of them.
+double motion_of_three(const LineModel& line, const CarriedRow& carried, Complex at) noexcept {
+  Complex shape[3];
+  for (int i = 0; i < 3; ++i) shape[i] = shape_of(line.modal, carried.unknown[i]);
+  const double *const weight = carried.weight, *const re = at.re + line.first,
+                      *const im = at.im + line.first;
+  double sum[kLanes] = {};
+  for (std::int32_t k = 0; k < line.size; k += kLanes) {
+#pragma omp simd
+    for (int l = 0; l < kLanes; ++l) {
+      const double own_re = (weight[0] * shape[0].re[k + l] + weight[1] * shape[1].re[k + l]) +
+                            weight[2] * shape[2].re[k + l];
+      const double own_im = (weight[0] * shape[0].im[k + l] + weight[1] * shape[1].im[k + l]) +
+                            weight[2] * shape[2].im[k + l];
+      sum[l] += own_re * re[k + l] - own_im * im[k + l];
+    }
+  }
+  return lane_sum(sum);
+}
+
+}  // namespace
+
+double motion(const LineModel& line, const RailRow& row, const Configuration& at) noexcept {
+  CarriedRow carried;
+  carry(line, row, carried);
+  if (line.modal.count > 0 && carried.count == 3) return motion_of_three(line, carried, at.modes);
+  double sum = 0.;
+  for (int i = 0; i < carried.count; ++i)
+    sum += carried.weight[i] * unknown_value(line, carried.unknown[i], at);
+  return sum;
+}
+
+double axis_height(const Model& model, std::int32_t rail, std::int32_t element, double xi,
+                   const Configuration& at) noexcept {
+  const Cant& cant = model.cant[rail];
+  RailRow row{};
+  row.rail = rail;
+  row.element = element;
+  double shape[3];
+  shape_functions(xi, shape);
+  for (int i = 0; i < 3; ++i) {
+    row.coefficient[i][1] = shape[i] * cant.sine;
+    row.coefficient[i][2] = shape[i] * cant.cosine;
+  }
+  return motion(model, row, at);
 }
 
 namespace {

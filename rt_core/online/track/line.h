@@ -58,16 +58,6 @@ inline double weight_of(const LineModel& line, std::int32_t rail, int k) noexcep
                                                       : line.rail_factor[rail];
 }
 
-/// Sets a row to that of the height of the section's point (y, z), m.
-/// @param shape  [3] of the row's element
-inline void set_height_row(const Cant& cant, double y, double z, const double* shape,
-                           RailRow& row) noexcept {
-  double of_node[9];
-  height_row(cant, y, z, of_node);
-  for (int i = 0; i < 3; ++i)
-    for (int k = 0; k < 9; ++k) row.coefficient[i][k] = shape[i] * of_node[k];
-}
-
 /// Vertical displacement of a rail's axis by the lines alone, m.
 double axis_height(const Model& model, std::int32_t rail, std::int32_t element, double xi,
                    const Configuration& at) noexcept;
@@ -77,6 +67,12 @@ bool carries(const LineModel& line, const RailRow& row) noexcept;
 
 /// The part of a row's displacement by a line.
 double motion(const LineModel& line, const RailRow& row, const Configuration& at) noexcept;
+/// Displacement along a row by all lines, without residual flexibility.
+inline double motion(const Model& model, const RailRow& row, const Configuration& at) noexcept {
+  double sum = 0.;
+  for (std::int32_t l = 0; l < model.lines; ++l) sum += motion(model.line[l], row, at);
+  return sum;
+}
 
 /// rhs += force * row for a banded line; rhs [unknowns] of all lines.
 void spread(const LineModel& line, const RailRow& row, double force, double* rhs) noexcept;

@@ -2,6 +2,7 @@
 
 #include "online/math/sine.h"
 #include "online/math/table.h"
+#include "online/track/rail_point.h"
 #include "online/track/travel.h"
 
 namespace railstep {
@@ -12,13 +13,12 @@ PlacedLoad place(const Model& model, const LoadModel& load, std::int64_t step,
   PlacedLoad at{};
   at.place = load.start + way_at(model, load.travel, step, before).distance;
   at.x = track_offset(model, step) + at.place;
-  const double scaled = at.place / model.element_length;
-  at.on_rail = scaled >= 0. && scaled <= model.elements;
+  const PlaceOnRails found = place_on_rails(model, at.place);
+  at.on_rail = found.on_rail;
   if (!at.on_rail) return at;
   at.row.rail = load.rail;
-  at.row.element = static_cast<std::int32_t>(scaled);
-  if (at.row.element == model.elements) at.row.element = model.elements - 1;
-  at.xi = 2. * (scaled - at.row.element) - 1.;
+  at.row.element = found.element;
+  at.xi = found.xi;
   double shape[3];
   shape_functions(at.xi, shape);
   for (int i = 0; i < 3; ++i)
@@ -30,12 +30,6 @@ PlacedLoad place(const Model& model, const LoadModel& load, std::int64_t step,
   if (load.amplitude != 0. && !taken_off)
     at.force += load.amplitude * sine_of_turns(load.frequency * time + load.phase);
   return at;
-}
-
-double deflection(const Model& model, const PlacedLoad& placed, const Configuration& at) noexcept {
-  double sum = 0.;
-  for (std::int32_t l = 0; l < model.lines; ++l) sum += motion(model.line[l], placed.row, at);
-  return sum;
 }
 
 }  // namespace railstep

@@ -17,7 +17,4 @@ struct PlacedLoad {
 PlacedLoad place(const Model& model, const LoadModel& load, std::int64_t step,
                  double before = 0.) noexcept;
 
-/// Vertical displacement of the loaded point by the lines alone, m.
-double deflection(const Model& model, const PlacedLoad& placed, const Configuration& at) noexcept;
-
 }  // namespace railstep

@@ -51,7 +51,7 @@ int rail_forces(const Model& model, const Outputs& outputs, RailForce* forces) n
     forces[count++] =
         rail_force(model, model.load[i].load_point, outputs.load_place[i], outputs.load_force[i]);
   for (std::int32_t i = 0; i < wheel_count(model); ++i)
-    forces[count++] = rail_force(model, load_point_of(model, i), outputs.contact_place[i],
+    forces[count++] = rail_force(model, model.contact[i].load_point, outputs.contact_place[i],
                                  outputs.contact_on_rail[i] ? -outputs.contact_force[i] : 0.);
   for (std::int32_t i = 0; i < model.external_wheels; ++i)
     forces[count++] =
@@ -101,6 +101,17 @@ double residual_displacement(const Model& model, const RailForce* forces, int co
     sum += forces[i].force * (i == at ? residual_under(model, forces[i])
                                       : residual_between(model, forces[i], forces[at]));
   return sum;
+}
+
+void residual_displacements(const Model& model, const RailForce* forces, int count, int points,
+                            double* moved) noexcept {
+  for (int i = 0; i < points; ++i) moved[i] = forces[i].force * residual_under(model, forces[i]);
+  for (int i = 0; i < count; ++i)
+    for (int j = 0; j < i && j < points; ++j) {  // the same both ways (Maxwell)
+      const double between = residual_between(model, forces[j], forces[i]);
+      moved[j] += forces[i].force * between;
+      if (i < points) moved[i] += forces[j].force * between;
+    }
 }
 
 double residual_of_track_sensor(const Model& model, std::int32_t track_sensor,

@@ -44,6 +44,10 @@ double residual_between(const Model& model, const RailForce& force, const RailFo
 double residual_displacement(const Model& model, const RailForce* forces, int count,
                              int at) noexcept;
 
+/// The same of the first points. @param moved  [points] out
+void residual_displacements(const Model& model, const RailForce* forces, int count, int points,
+                            double* moved) noexcept;
+
 /// Residual part of a track sensor's value by all forces.
 double residual_of_track_sensor(const Model& model, std::int32_t track_sensor,
                                 const RailForce* forces, int count) noexcept;

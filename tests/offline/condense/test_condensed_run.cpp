@@ -34,10 +34,10 @@ double energy(const ModelRun& run) {
   }
   sum -= w.rest[2] * run.state.u[w.first + 2];
   WheelContact sides[2];
-  find_contacts(model, w, {run.state.u, {run.state.u, run.state.v}}, sides);
+  find_contacts(model, 0, {run.state.u, {run.state.u, run.state.v}}, sides);
   for (const WheelContact& side : sides) {
     const double d = std::max(0., side.penetration);
-    sum += .4 * w.hertz[0] * d * d * std::sqrt(d);
+    sum += .4 * model.contact[0].law.hertz * d * d * std::sqrt(d);
   }
   return sum;
 }

@@ -30,7 +30,7 @@ ModelRun rolling(const Wheelset& w, double dt, double y, double speed) {
   double depth[2];  // the treads are half a metre from the middle, the weight is at y
   for (const int i : {0, 1}) {
     run.state.contact_force[i] = w.weight * (.5 + (i == 0 ? y : -y));
-    depth[i] = std::pow(run.state.contact_force[i] / own.hertz[i], 2. / 3.);
+    depth[i] = std::pow(run.state.contact_force[i] / run.model().contact[i].law.hertz, 2. / 3.);
   }
   run.state.u[own.first + 2] = -.5 * (depth[0] + depth[1]);
   run.state.u[own.first + 3] = depth[1] - depth[0];
@@ -39,8 +39,8 @@ ModelRun rolling(const Wheelset& w, double dt, double y, double speed) {
 
 PlaneWheelset plane_of(const ModelRun& run) {
   PlaneWheelset plane;
-  plane.hertz = run.model().wheelset[0].hertz[0];
-  const ContactModel& face = run.model().flange[0].contact;
+  plane.hertz = run.model().contact[0].law.hertz;
+  const ContactLaw& face = run.model().contact[2].law;
   plane.stiffness = face.stiffness;
   plane.damping = face.damping;
   plane.face_hertz = face.hertz;

@@ -60,7 +60,7 @@ struct RoughRun {
     const Model& model = run.model();
     const Configuration at{run.state.u, {run.state.u, run.state.v}};
     WheelContact contact[kMaxWheels];
-    find_vehicle_contacts(model, model.vehicle[0], run.state.steps, 0., at, contact);
+    find_vehicle_contacts(model, run.state.steps, 0., at, contact);
     return {contact[0].slope + slope_under(model, contact[0], at),
             contact[1].slope + slope_under(model, contact[1], at)};
   }

@@ -28,7 +28,7 @@ TEST_CASE("a vehicle at rest on a track stays at rest to rounding", "[vehicle]")
                              options_of(modal, track, 1e-4));
     std::vector<double> start = run.memory;
     const State before = state_on(run.model(), start.data());
-    const VehicleModel& v = run.model().vehicle[0];
+    const SuspendedModel& v = run.model().vehicle[0];
     for (int i = 0; i < 1000; ++i) run.step();
     CHECK(run.seen == Status::ok);
     // With K's condition of 1e8 wheel forces at the start differ by 1e-8 from those of the step.
@@ -293,7 +293,7 @@ struct BogieRun {
     model.steps_per_frame = 1;
     dt = model.scheme.dt;
     Outputs outputs{};
-    const VehicleModel& v = model.vehicle[0];
+    const SuspendedModel& v = model.vehicle[0];
     for (std::int64_t i = 0; i < model.steps; ++i) {
       REQUIRE(advance_frame(model, run.state, run.workspace, outputs) == Status::ok);
       for (std::size_t k = 0; k < 2; ++k) force[k].push_back(outputs.contact_force[k]);

@@ -174,7 +174,7 @@ ModelRun falling(const Track& track, double x, const Scheme& scheme, bool residu
 /// f: 2/5 C d^2.5 + G f^2/2; if `standing`, that of the energy account at the present state.
 double most_growth(ModelRun& run, double speed, double above, bool standing) {
   const Model& model = run.model();
-  const VehicleWheel& wheel = model.vehicle_wheel[0];
+  const ContactModel& wheel = model.contact[0];
   reset(model, run.state);
   run.state.u[model.vehicle[0].first] = above;
   run.state.v[model.vehicle[0].first] = -speed;
@@ -189,7 +189,7 @@ double most_growth(ModelRun& run, double speed, double above, bool standing) {
     met = met || f > 0.;
     const RailForce at = rail_force(model, wheel.load_point, run.outputs.contact_place[0], f);
     const StoredEnergy& now = energy.stored();
-    const double contact = stored(wheel.contact.hertz, -run.outputs.contact_gap[0]) +
+    const double contact = stored(wheel.law.hertz, -run.outputs.contact_gap[0]) +
                            .5 * f * f * residual_under(model, at);
     const double total = now.kinetic + now.strain - energy.flow().weight +
                          (standing ? now.hertz + now.residual : contact);

@@ -135,21 +135,26 @@ TEST_CASE("numbers that would make a solve unsafe are refused even with the righ
   CHECK(status([&](Model& m) { m.load[0].stop = nan; }) == bad);
   const double no_inertia[6] = {1., 1., 1., 0., 1., 1.};
   CHECK(status([&](Model& m) { m.wheelset[0].mass = no_inertia; }) == bad);
-  CHECK(status([&](Model& m) { m.wheelset[0].hertz[1] = -1.; }) == bad);
+  CHECK(status([&](Model& m) { m.contact[1].law.hertz = -1.; }) == bad);
   CHECK(status([&](Model& m) { m.wheelset[0].radius = 0.; }) == bad);
   CHECK(status([&](Model& m) { m.wheelset[0].cap = 0; }) == bad);
-  CHECK(status([&](Model& m) { m.vehicle_wheel[0].contact = {0., 0., 0.}; }) == bad);
-  CHECK(status([&](Model& m) { m.vehicle_wheel[0].contact = {0., 1e8, -1.}; }) == bad);
-  const VehicleModel& own = packed->model().vehicle[0];
+  CHECK(status([&](Model& m) { m.contact[vehicle_contact(m, 0)].law = {0., 0., 0.}; }) == bad);
+  CHECK(status([&](Model& m) { m.contact[vehicle_contact(m, 0)].law = {0., 1e8, -1.}; }) == bad);
+  const SuspendedModel& own = packed->model().vehicle[0];
   const auto turned = [](const double* from, std::int32_t n) {  // last of a matrix's diagonal
     std::vector<double> copy(from, from + std::ptrdiff_t{n} * n);
     copy.back() = -copy.back();
     return copy;
   };
-  const std::vector<double> inverse = turned(own.inverse, own.size),
-                            compliance = turned(own.compliance, own.wheels);
+  const std::vector<double> inverse = turned(own.inverse, own.size);
+  const ContactModel& wheel = packed->model().contact[vehicle_contact(packed->model(), 0)];
+  std::vector<double> moved(wheel.moved, wheel.moved + own.size);
+  for (double& x : moved) x = -x;
   CHECK(status([&](Model& m) { m.vehicle[0].inverse = inverse.data(); }) == bad);
-  CHECK(status([&](Model& m) { m.vehicle[0].compliance = compliance.data(); }) == bad);
+  CHECK(status([&](Model& m) { m.contact[vehicle_contact(m, 0)].moved = moved.data(); }) == bad);
+  CHECK(status([&](Model& m) { m.contact[vehicle_contact(m, 0)].bodies = m.vehicles; }) == bad);
+  CHECK(status([&](Model& m) { m.contact[0].rail = 1; }) == bad);
+  CHECK(status([&](Model& m) { m.contact[0].kind = ContactKind::wheel; }) == bad);
   std::vector<double> table(packed->model().load[0].table, packed->model().load[0].table + 4);
   table[3] = nan;
   CHECK(status([&](Model& m) { m.load[0].table = table.data(); }) == bad);
@@ -164,11 +169,14 @@ TEST_CASE("flanges without a wheelset or without a law are refused", "[artefact]
   };
   CHECK(status([](Model&) {}) == LoadStatus::ok);
   CHECK(status([](Model& m) { m.flange[0].wheelset = 1; }) == LoadStatus::bad_content);
-  CHECK(status([](Model& m) { m.flange[0].contact.stiffness = 0.; }) == LoadStatus::bad_content);
-  CHECK(status([](Model& m) { m.flange[0].contact.damping = -1.; }) == LoadStatus::bad_content);
-  CHECK(status([](Model& m) { m.flange[0].contact.stiffness = std::nan(""); }) ==
+  CHECK(status([](Model& m) { m.contact[flange_contact(m, 0)].law.stiffness = 0.; }) ==
         LoadStatus::bad_content);
-  CHECK(status([](Model& m) { m.flange[0].contact.hertz = 1e10; }) == LoadStatus::ok);
+  CHECK(status([](Model& m) { m.contact[flange_contact(m, 0)].law.damping = -1.; }) ==
+        LoadStatus::bad_content);
+  CHECK(status([](Model& m) { m.contact[flange_contact(m, 0)].law.stiffness = std::nan(""); }) ==
+        LoadStatus::bad_content);
+  CHECK(status([](Model& m) { m.contact[flange_contact(m, 0)].law.hertz = 1e10; }) ==
+        LoadStatus::ok);
 }
 
 TEST_CASE("names that a scene cannot give are refused even with the right sum", "[artefact]") {

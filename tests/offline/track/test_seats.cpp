@@ -318,8 +318,8 @@ TEST_CASE("a wheelset stands with half its weight on each of two different rails
   Traffic traffic{.wheelsets = {paper_wheelset(1.5)}, .head = kHead};
   traffic.wheelsets[0].weight = 100e3;
   ModelRun run = in_equilibrium(track, traffic, full_order(1e-4));
-  const WheelsetModel& w = run.model().wheelset[0];
-  CHECK_THAT(w.hertz[1], WithinRel(.5 * w.hertz[0], 1e-12));
+  const ContactModel* const tread = run.model().contact;
+  CHECK_THAT(tread[1].law.hertz, WithinRel(.5 * tread[0].law.hertz, 1e-12));
   for (int i = 0; i < 200; ++i) {
     run.step();
     for (int side = 0; side < 2; ++side)

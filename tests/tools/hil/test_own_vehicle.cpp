@@ -31,7 +31,7 @@ double hertz_of_inside() {
       {"external_wheel=[]",
        "vehicle=[{name=\"v\", type=\"sprung_mass\", mass_kg=5000, unsprung_mass_kg=900, "
        "stiffness_n_per_m=1e6, damping_n_s_per_m=2e4, start_m=0.3, speed_m_per_s=30}]"}));
-  return run->model().vehicle_wheel[0].contact.hertz;
+  return run->model().contact[0].law.hertz;
 }
 
 /// Rows that the program in C prints of its ride over the track.
