@@ -52,8 +52,6 @@ StepScene read_track_step(const Table& step, const TrackScene& track);
 void read_scheme(const Table& step, double rho_inf, bool of_bodies, StepScene& read);
 /// Reads how contact forces follow the penetration, for a scene whose [condense] is read.
 void read_contact(const Table& root, Scene& scene);
-/// Refuses scenes with external wheels and something nonlinear, frames of several steps, or a
-/// scheme of two stages.
 /// Refuses a run that is not a whole number of frames.
 void check_frames(const Table& step, const StepScene& read);
 /// Where a track's nodes lie in its section: key reference_line, the centroid by default.

@@ -169,7 +169,8 @@ struct FlangeModel {
   double tip;          // z of the flanges' tips from the centre, m: no contact with rails below it
 };
 
-/// What touches a rail: the tread or a flange of a wheelset, or the upright wheel of a vehicle.
+/// Which part of bodies is in contact: the tread or a flange of a wheelset, or the upright wheel of
+/// a vehicle.
 enum class ContactKind : std::int32_t { tread, flange, wheel };
 
 /// A contact with a rail. Beyond the rail's ends an upright wheel rolls on level, rigid ground in
@@ -181,8 +182,8 @@ struct ContactModel {
   std::int32_t load_point;  // rail and height at which its vertical force acts
   SignalModel tread;        // deviation of its radius over the distance rolled
   double place;             // of an upright wheel from its vehicle's origin, m
-  /// Of an upright wheel, [size] of its vehicle: its height over the coordinates, and these moved
-  /// by a unit force up.
+  /// [size of its vehicle] for an upright wheel, else null: `row` gives its height over the
+  /// vehicle's coordinates, and `moved` is how a unit force up moves these.
   const double *row, *moved;
 };
 
