@@ -61,6 +61,19 @@ double difference(const Traced& a, const Traced& b, const std::string& column) {
 
 }  // namespace
 
+TEST_CASE("a bump stop presses from its gaps on, by the slope of its energy", "[bump_stop]") {
+  const StopModel stop{.01, .02, 2e7};
+  for (const double z : {-.05, -.0101, -.005, .0, .015, .0201, .07}) {
+    CAPTURE(z);
+    const StopForce at = stop_force(stop, z);
+    const StopForce up = stop_force(stop, z + 1e-6), down = stop_force(stop, z - 1e-6);
+    CHECK((up.energy - down.energy) / 2e-6 == Approx(-at.force).margin(1e-4));
+    CHECK((up.force - down.force) / 2e-6 == Approx(at.slope).margin(1e-4));
+  }
+  CHECK(stop_force(stop, -.03).force == Approx(2e7 * .02));
+  CHECK(stop_force(stop, .03).force == Approx(-2e7 * .01));
+}
+
 TEST_CASE("a bump stop without gap is a spring", "[bump_stop]") {
   for (const char* scene : {"manchester_straight", "manchester_ring"})
     for (const char* kind : {"full", "modal"}) {

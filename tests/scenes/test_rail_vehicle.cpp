@@ -56,11 +56,15 @@ TEST_CASE("runs of a vehicle hunt from its linear critical speed on", "[rail_veh
   for (const Known& known :
        {Known{.091105769, 97.0437}, {.168206167, 93.5162}, {.294479742, 73.5024}}) {
     INFO("slope " << known.slope);
-    const auto at = [&](double speed) {
-      return straight({set("contact.slope", known.slope), set("vehicle[0].speed_m_per_s", speed)});
-    };
-    CHECK(growth(at(.995 * known.speed), 80.) < 0.);
-    CHECK(growth(at(1.005 * known.speed), 80.) > 0.);
+    for (const char* kind : {"full", "modal"}) {
+      INFO(kind);
+      const auto at = [&](double speed) {
+        return straight({set("contact.slope", known.slope), set("vehicle[0].speed_m_per_s", speed),
+                         std::string("condense.kind=\"") + kind + "\""});
+      };
+      CHECK(growth(at(.995 * known.speed), 80.) < 0.);
+      CHECK(growth(at(1.005 * known.speed), 80.) > 0.);
+    }
   }
 }
 

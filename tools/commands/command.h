@@ -41,6 +41,7 @@ Command add_hard(CLI::App& app);
 Command add_hil(CLI::App& app);
 Command add_modes(CLI::App& app);
 Command add_pareto(CLI::App& app);
+Command add_profile(CLI::App& app);
 Command add_receptance(CLI::App& app);
 Command add_replay(CLI::App& app);
 Command add_run(CLI::App& app);

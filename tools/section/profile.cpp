@@ -13,7 +13,6 @@ namespace railstep {
 namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-constexpr double kMillimetre = 1e-3;  // m
 
 Published read_published(const Table& t) {
   const auto value = [&t](const char* key, double unit) {

@@ -6,6 +6,8 @@
 
 namespace railstep {
 
+inline constexpr double kMillimetre = 1e-3;  // m, of profile files
+
 /// Published properties of a profile, to compare with; a value that is not published is NaN.
 struct Published {
   double area, centroid_height, inertia_y, inertia_z;    // m2, m, m4, m4

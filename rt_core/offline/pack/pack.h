@@ -31,9 +31,6 @@ struct MovingLoad {
 /// Speed of a load at t = 0, m/s.
 double first_speed(const MovingLoad& load);
 
-/// Depth below the railhead's top at which the gauge is measured and flanges touch it, m.
-inline constexpr double kGaugeDepth = .014;
-
 /// The flanges of a wheelset's wheels, as a scene gives them.
 struct Flange {
   double clearance = 0.;                // m, of each wheel along y in the middle of the track

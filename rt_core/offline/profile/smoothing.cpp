@@ -1,0 +1,184 @@
+#include "offline/profile/smoothing.h"
+
+#include <Eigen/SparseCholesky>
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "offline/math/refuse.h"
+#include "offline/math/root.h"
+
+namespace railstep {
+
+namespace {
+
+constexpr double kGap = 5e-3;   // m
+constexpr double kTurn = .35;   // rad
+constexpr double kFarOff = 6.;  // tolerances
+
+using Sparse = Eigen::SparseMatrix<double>;
+
+std::string place_of(const Point& p) { return std::to_string(1e3 * p[0]) + " mm"; }
+
+void check_points(std::span<const Point> points) {
+  if (points.size() < 4)
+    refuse("E-POINTS-01",
+           "there are " + std::to_string(points.size()) + " points; expected at least 4");
+  std::vector<double> spacing;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (!std::isfinite(points[i][0]) || !std::isfinite(points[i][1]))
+      refuse("E-POINTS-02", "point " + std::to_string(i + 1) + " is not finite");
+    if (i == 0) continue;
+    spacing.push_back(distance(points[i - 1], points[i]));
+    if (spacing.back() == 0.)
+      refuse("E-POINTS-07", "point " + std::to_string(i + 1) + " at " + place_of(points[i]) +
+                                " is the one before it again");
+  }
+  std::vector<double> sorted = spacing;
+  std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2),
+                   sorted.end());
+  const double middle = sorted[sorted.size() / 2];
+  for (std::size_t i = 0; i < spacing.size(); ++i)
+    if (spacing[i] > kGap && spacing[i] > 5. * middle)
+      refuse("E-POINTS-04", "the points leave a gap from " + place_of(points[i]) + " to " +
+                                place_of(points[i + 1]));
+}
+
+/// Turns of the chords at inner points, rad.
+void check_kinks(std::span<const Point> points) {
+  std::vector<double> turn(points.size(), 0.);
+  const auto angle = [&](std::size_t i) {
+    return std::atan2(points[i + 1][1] - points[i][1], points[i + 1][0] - points[i][0]);
+  };
+  for (std::size_t i = 1; i + 1 < points.size(); ++i) turn[i] = std::abs(angle(i) - angle(i - 1));
+  for (std::size_t i = 1; i + 1 < points.size(); ++i) {
+    const double beside = .5 * (turn[i - 1] + turn[i + 1]);
+    if (turn[i] > kTurn && turn[i] > 4. * beside)
+      refuse("E-POINTS-05", "the points turn by " + std::to_string(turn[i]) + " rad at " +
+                                place_of(points[i]) + "; expected a surface without a kink");
+  }
+}
+
+/// Reinsch's problem for both coordinates over the length of the chords: with values z, second
+/// derivatives g at inner points and mean spacing 1,
+///   (R + p Q'Q) g = Q' z,  f = z - p Q g.
+class Reinsch {
+ public:
+  using Values = Eigen::Matrix<double, Eigen::Dynamic, 2>;
+
+  explicit Reinsch(std::span<const Point> points)
+      : count_(static_cast<int>(points.size())),
+        z_(count_, 2),
+        Q_(count_, count_ - 2),
+        R_(count_ - 2, count_ - 2) {
+    std::vector<double> h;
+    double length = 0.;
+    for (int i = 0; i < count_; ++i) {
+      const auto k = static_cast<std::size_t>(i);
+      z_.row(i) << points[k][0], points[k][1];
+      if (i > 0) h.push_back(distance(points[k - 1], points[k]));
+      if (i > 0) length += h.back();
+    }
+    for (double& spacing : h) spacing *= (count_ - 1) / length;
+    std::vector<Eigen::Triplet<double>> q, r;
+    for (int i = 0; i + 2 < count_; ++i) {
+      const double a = h[static_cast<std::size_t>(i)], b = h[static_cast<std::size_t>(i) + 1];
+      q.emplace_back(i, i, 1. / a);
+      q.emplace_back(i + 1, i, -1. / a - 1. / b);
+      q.emplace_back(i + 2, i, 1. / b);
+      r.emplace_back(i, i, (a + b) / 3.);
+      if (i + 3 < count_) {
+        r.emplace_back(i, i + 1, b / 6.);
+        r.emplace_back(i + 1, i, b / 6.);
+      }
+    }
+    Q_.setFromTriplets(q.begin(), q.end());
+    R_.setFromTriplets(r.begin(), r.end());
+  }
+  /// The smoothed points.
+  [[nodiscard]] Values at(double p) const {
+    const Sparse K = R_ + p * Sparse(Q_.transpose() * Q_);
+    const Values bent = Q_.transpose() * z_;
+    const Values g = Eigen::SimplicialLDLT<Sparse>(K).solve(bent);
+    return z_ - p * (Q_ * g);
+  }
+  /// Distances from the points, m.
+  [[nodiscard]] Eigen::VectorXd off(const Values& smooth) const {
+    return (smooth - z_).rowwise().norm();
+  }
+  [[nodiscard]] double rms(const Values& smooth) const {
+    return off(smooth).norm() / std::sqrt(static_cast<double>(count_));
+  }
+  /// The smoothed points with a root mean square of `tolerance`.
+  [[nodiscard]] Values within(double tolerance) const {
+    if (tolerance == 0.) return z_;
+    const auto over = [&](double exponent) { return rms(at(std::pow(10., exponent))) - tolerance; };
+    constexpr double kStiffest = 12., kSoftest = -12.;
+    if (over(kStiffest) <= 0.) return at(std::pow(10., kStiffest));
+    if (over(kSoftest) >= 0.) return z_;
+    return at(std::pow(10., bracketed_root(over, kSoftest, kStiffest, 1e-9)));
+  }
+
+ private:
+  int count_;
+  Values z_;
+  Sparse Q_, R_;
+};
+
+/// The natural cubic spline through points in the order of y.
+RunningSurface interpolated(const Reinsch::Values& points) {
+  const Eigen::Index count = points.rows();
+  const Eigen::VectorXd y = points.col(0), z = points.col(1);
+  Eigen::VectorXd h = y.tail(count - 1) - y.head(count - 1);
+  for (Eigen::Index i = 0; i + 1 < count; ++i)
+    if (!(h[i] > 0.))
+      refuse("E-POINTS-03", "point " + std::to_string(i + 2) + " at " +
+                                std::to_string(1e3 * y[i + 1]) +
+                                " mm is not beyond the one before it; expected lateral places "
+                                "that rise");
+  const Eigen::VectorXd chord = (z.tail(count - 1) - z.head(count - 1)).cwiseQuotient(h);
+  std::vector<Eigen::Triplet<double>> entries;
+  for (Eigen::Index i = 0; i + 2 < count; ++i) {
+    entries.emplace_back(i, i, (h[i] + h[i + 1]) / 3.);
+    if (i + 3 < count) {
+      entries.emplace_back(i, i + 1, h[i + 1] / 6.);
+      entries.emplace_back(i + 1, i, h[i + 1] / 6.);
+    }
+  }
+  Sparse A(count - 2, count - 2);
+  A.setFromTriplets(entries.begin(), entries.end());
+  Eigen::VectorXd second = Eigen::VectorXd::Zero(count);
+  second.segment(1, count - 2) = Eigen::SimplicialLDLT<Sparse>(A).solve(
+      Eigen::VectorXd(chord.tail(count - 2) - chord.head(count - 2)));
+  std::vector<SurfacePiece> pieces;
+  for (Eigen::Index i = 0; i + 1 < count; ++i) {
+    const double a = second[i], b = second[i + 1];
+    pieces.push_back({y[i],
+                      y[i + 1],
+                      y[i],
+                      0.,
+                      0.,
+                      {z[i], chord[i] - h[i] * (2. * a + b) / 6., .5 * a, (b - a) / (6. * h[i])}});
+  }
+  return RunningSurface(std::move(pieces));
+}
+
+}  // namespace
+
+SmoothedSurface smoothed(std::span<const Point> points, double tolerance) {
+  check_points(points);
+  check_kinks(points);
+  const Reinsch problem(points);
+  const Reinsch::Values smooth = problem.within(tolerance);
+  const Eigen::VectorXd off = problem.off(smooth);
+  Eigen::Index worst = 0;
+  const double largest = off.maxCoeff(&worst);
+  if (tolerance > 0. && largest > kFarOff * tolerance)
+    refuse("E-POINTS-06", "the point at " + place_of(points[static_cast<std::size_t>(worst)]) +
+                              " lies " + std::to_string(1e3 * largest) +
+                              " mm off the smoothed surface; expected at most " +
+                              std::to_string(1e3 * kFarOff * tolerance) + " mm, 6 tolerances");
+  return {interpolated(smooth), problem.rms(smooth), largest};
+}
+
+}  // namespace railstep

@@ -1,0 +1,81 @@
+// Splines through measured points.
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <random>
+
+#include "offline/profile/smoothing.h"
+
+using namespace railstep;
+using Catch::Matchers::Contains;
+
+namespace {
+
+/// Heights of a circle's top, R 80 mm, 0.5 mm apart, with noise.
+std::vector<Point> circle(double noise) {
+  std::mt19937 engine(11);
+  std::normal_distribution<double> error(0., 1.);
+  std::vector<Point> points;
+  for (int i = -40; i <= 40; ++i) {
+    const double y = .5e-3 * i;
+    points.push_back({y, std::sqrt(.08 * .08 - y * y) + noise * error(engine)});
+  }
+  return points;
+}
+
+double curvature_error(const RunningSurface& surface) {
+  double most = 0.;
+  for (double y = -.015; y < .015; y += 1e-4) {
+    const double exact = -.08 * .08 / std::pow(.08 * .08 - y * y, 1.5);
+    most = std::max(most, std::abs(surface.at(y).curvature / exact - 1.));
+  }
+  return most;
+}
+
+}  // namespace
+
+TEST_CASE("a spline without tolerance goes through its points", "[profile]") {
+  const std::vector<Point> points = circle(0.);
+  const SmoothedSurface made = smoothed(points, 0.);
+  for (const Point& p : points) CHECK(made.surface.at(p[0]).height == Approx(p[1]).epsilon(1e-12));
+  CHECK(curvature_error(made.surface) < 1e-3);
+  CHECK(made.largest < 1e-12);
+}
+
+TEST_CASE("smoothing takes the noise out of the curvature", "[profile]") {
+  // 5 um of noise, 0.5 mm apart: the second difference is noise alone.
+  const std::vector<Point> points = circle(5e-6);
+  CHECK(curvature_error(smoothed(points, 0.).surface) > 2.);
+  const SmoothedSurface made = smoothed(points, 5e-6);
+  CHECK(curvature_error(made.surface) < .3);
+  CHECK(made.rms == Approx(5e-6).epsilon(1e-6));
+  CHECK(made.largest < 3e-5);
+}
+
+TEST_CASE("a tolerance beyond a straight line gives that line", "[profile]") {
+  const SmoothedSurface made = smoothed(circle(0.), .01);
+  CHECK(std::abs(made.surface.at(0.).curvature) < 1e-5);
+  CHECK(made.rms < .01);
+}
+
+TEST_CASE("points that are no running surface are refused with their place", "[profile]") {
+  const auto refused = [](std::vector<Point> points, double tolerance, const char* words) {
+    CHECK_THROWS_WITH(smoothed(points, tolerance), Contains(words));
+  };
+  refused({{0., 0.}, {1e-3, 0.}, {2e-3, 0.}}, 0., "3 points");
+  std::vector<Point> points = circle(0.);
+  points[7][1] = NAN;
+  refused(points, 0., "point 8 is not finite");
+  points = circle(0.);
+  points[9][0] = points[8][0];
+  refused(points, 0., "point 10");
+  points = circle(0.);
+  points.erase(points.begin() + 20, points.begin() + 40);
+  refused(points, 0., "gap from -10.5");
+  points = circle(0.);
+  for (std::size_t i = 50; i < points.size(); ++i)
+    points[i][1] -= .8 * (points[i][0] - points[49][0]);
+  refused(points, 0., "rad at 4.5");
+  points = circle(2e-6);
+  points[30][1] += 1e-4;
+  refused(points, 5e-6, "the point at -5.0");
+}
