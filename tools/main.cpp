@@ -37,10 +37,10 @@ Exit report(const std::vector<Message>& errors, Exit exit, bool json) {
 
 Exit run(CLI::App& app, int argc, char** argv) {
   const std::vector<Command> commands = {
-      add_fit(app),      add_static(app), add_modes(app), add_critical(app), add_receptance(app),
-      add_condense(app), add_run(app),    add_sweep(app), add_replay(app),   add_compare(app),
-      add_rules(app),    add_hil(app),    add_hard(app),  add_pareto(app),   add_profile(app),
-      add_tune(app),     add_explain(app)};
+      add_fit(app),        add_static(app),   add_modes(app),  add_critical(app), add_creep(app),
+      add_receptance(app), add_condense(app), add_run(app),    add_sweep(app),    add_replay(app),
+      add_compare(app),    add_rules(app),    add_hil(app),    add_hard(app),     add_pareto(app),
+      add_profile(app),    add_tune(app),     add_explain(app)};
   want_finite_numbers(app);
   refuse_empty_words(argc, argv);
   app.parse(argc, argv);

@@ -36,6 +36,7 @@ Command add_fit(CLI::App& app);
 Command add_explain(CLI::App& app);
 Command add_compare(CLI::App& app);
 Command add_condense(CLI::App& app);
+Command add_creep(CLI::App& app);
 Command add_critical(CLI::App& app);
 Command add_hard(CLI::App& app);
 Command add_hil(CLI::App& app);

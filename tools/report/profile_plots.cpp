@@ -40,11 +40,12 @@ std::string figure(const std::vector<Curve>& curves, const std::string& settings
     plot += fmt::format("{} $d{} using 1:2 with lines {} title \"{}\"", i == 0 ? "" : ",", i,
                         kLines[i], curves[i].name);
   }
-  return drawn(fmt::format(
-      "set terminal svg size 900,420 noenhanced font 'sans,12' background '#ffffff'\n"
-      "set grid xtics ytics lc rgb '#dddddd'\nset tics nomirror\nset border 3\nset key below\n"
-      "set datafile missing 'nan'\n{}\n{}plot{}\n",
-      settings, blocks, plot));
+  return drawn(
+      fmt::format("set terminal svg size 900,420 noenhanced font 'sans,12' background '#ffffff'\n"
+                  "set grid xtics ytics lc rgb '#dddddd'\nset tics nomirror\nset border 3\nset key "
+                  "tmargin center horizontal\n"
+                  "set datafile missing 'nan'\n{}\n{}plot{}\n",
+                  settings, blocks, plot));
 }
 
 std::string over_shift(const std::vector<Curve>& curves, const std::string& ylabel) {
@@ -85,7 +86,8 @@ std::string plot_of_contacts(const ProfileAnswer& a) {
   const RunningSurface& wheel = a.wheel.growth;
   return drawn(fmt::format(
       "set terminal svg size 900,340 noenhanced font 'sans,12' background '#ffffff'\n"
-      "set grid xtics ytics lc rgb '#eeeeee'\nset tics nomirror\nset border 3\nset key below\n"
+      "set grid xtics ytics lc rgb '#eeeeee'\nset tics nomirror\nset border 3\nset key tmargin "
+      "center horizontal\n"
       "set size ratio -1\nset yrange [-26:16]\nset xlabel 'from the middle of the track, mm'\n"
       "set ylabel 'height, mm'\n$w << EOD\n{}EOD\n$r << EOD\n{}EOD\n$l << EOD\n{}EOD\n"
       "plot $l using 1:2 with lines lc rgb '#888888' lw 1 title 'contacts', $w using 1:2 with "

@@ -11,6 +11,7 @@ namespace railstep {
 namespace {
 
 constexpr int kStrips = 64;               // of a patch
+constexpr double kFirstApproach = 5e-5;   // m
 constexpr double kMostApproach = 3e-3;    // m
 constexpr double kMostRollBeyond = 2e-3;  // rad, beyond that of rigid contact
 
@@ -29,60 +30,86 @@ class Loading {
         minima_.push_back(i);
   }
 
-  [[nodiscard]] std::vector<WheelPatch> under(double approach) const {
-    std::vector<WheelPatch> patches;
-    double covered = samples_.first;
+  /// A patch under some approach: its deepest sample, and the ridges to its neighbours.
+  struct Valley {
+    std::size_t deepest, first, last;
+  };
+  /// Which minima share a patch under an approach.
+  [[nodiscard]] std::vector<Valley> valleys(double approach) const {
+    std::vector<Valley> found;
     for (const std::size_t i : minima_) {
-      if (samples_.place(i) < covered) continue;  // in the patch before
-      const std::size_t deepest = deepest_near(i, approach);
-      const double above = samples_.distance[deepest] - least_;
+      if (!found.empty() && share(found.back().deepest, i, approach)) {
+        if (samples_.distance[i] < samples_.distance[found.back().deepest])
+          found.back().deepest = i;
+        continue;
+      }
+      found.push_back({i, 0, samples_.distance.size() - 1});
+    }
+    for (std::size_t k = 1; k < found.size(); ++k)
+      found[k - 1].last = found[k].first = ridge(found[k - 1].deepest, found[k].deepest);
+    return found;
+  }
+  [[nodiscard]] std::vector<WheelPatch> under(double approach,
+                                              const std::vector<Valley>& all) const {
+    std::vector<WheelPatch> patches;
+    for (const Valley& valley : all) {
+      const double above = samples_.distance[valley.deepest] - least_;
       if (!(approach > above)) continue;
-      const auto [from, to] = edges(deepest, least_ + above + kVirtualPart * (approach - above));
-      patches.push_back(patch(samples_.place(deepest), from, to, approach - above));
-      covered = to;
+      const auto [from, to] = edges(valley, level(above, approach));
+      patches.push_back(patch(samples_.place(valley.deepest), from, to, approach - above));
     }
     return patches;
   }
-  [[nodiscard]] double upright(double approach) const {
+  [[nodiscard]] double upright(double approach, const std::vector<Valley>& all) const {
     double sum = 0.;
-    for (const WheelPatch& p : under(approach)) sum += p.force.normal * std::cos(p.deepest.angle);
+    for (const WheelPatch& p : under(approach, all))
+      sum += p.force.normal * std::cos(p.deepest.angle);
     return sum;
   }
   [[nodiscard]] WheelLoaded carrying(double force) const {
-    if (!(upright(kMostApproach) > force))
-      refuse("E-TOUCH-02",
-             "the rails do not carry " + std::to_string(force) + " N with an approach of 3 mm");
-    const double approach =
-        bracketed_root([&](double d) { return upright(d) - force; }, 0., kMostApproach, 1e-12);
-    return {-least_ - approach, approach, under(approach)};
+    // Which minima share a patch is decided at the approach before, and kept in the search.
+    double approach = kFirstApproach;
+    std::vector<Valley> all;
+    for (int turn = 0; turn < 4; ++turn) {
+      all = valleys(approach);
+      if (!(upright(kMostApproach, all) > force))
+        refuse("E-TOUCH-02",
+               "the rails do not carry " + std::to_string(force) + " N with an approach of 3 mm");
+      approach = bracketed_root([&](double d) { return upright(d, all) - force; }, 0.,
+                                kMostApproach, 1e-12);
+    }
+    return {-least_ - approach, approach, under(approach, all)};
   }
 
  private:
-  /// Among the minima that one patch about minimum i would cover, the deepest.
-  [[nodiscard]] std::size_t deepest_near(std::size_t i, double approach) const {
-    std::size_t best = i;
-    for (const std::size_t other : minima_) {
-      if (other <= i) continue;
-      const double above = samples_.distance[best] - least_;
-      const double level = least_ + above + kVirtualPart * (approach - above);
-      if (samples_.place(other) < edges(best, level).second &&
-          samples_.distance[other] < samples_.distance[best])
-        best = other;
-    }
-    return best;
+  /// Distance up to which the bodies overlap, by the law, about a point.
+  [[nodiscard]] double level(double above, double approach) const {
+    return least_ + above + kVirtualPart * (approach - above);
   }
-  /// Ends of the stretch about sample i that lies below a distance.
-  [[nodiscard]] std::pair<double, double> edges(std::size_t i, double level) const {
+  [[nodiscard]] std::size_t ridge(std::size_t left, std::size_t right) const {
+    const auto first = samples_.distance.begin();
+    return static_cast<std::size_t>(
+        std::max_element(first + static_cast<std::ptrdiff_t>(left),
+                         first + static_cast<std::ptrdiff_t>(right) + 1) -
+        first);
+  }
+  /// The overlap about the deeper of two minima goes beyond the ridge between them.
+  [[nodiscard]] bool share(std::size_t left, std::size_t right, double approach) const {
+    const double above = std::min(samples_.distance[left], samples_.distance[right]) - least_;
+    return samples_.distance[ridge(left, right)] < level(above, approach);
+  }
+  /// First and last place of a valley that lies below a distance.
+  [[nodiscard]] std::pair<double, double> edges(const Valley& valley, double below) const {
     const std::vector<double>& at = samples_.distance;
     const auto crossing = [&](std::size_t inner, std::size_t outer) {
-      const double part = (level - at[inner]) / (at[outer] - at[inner]);
+      const double part = (below - at[inner]) / (at[outer] - at[inner]);
       return samples_.place(inner) + part * (samples_.place(outer) - samples_.place(inner));
     };
-    std::size_t a = i, b = i;
-    while (a > 0 && at[a - 1] < level) --a;
-    while (b + 1 < at.size() && at[b + 1] < level) ++b;
-    return {a > 0 ? crossing(a, a - 1) : samples_.first,
-            b + 1 < at.size() ? crossing(b, b + 1) : samples_.place(at.size() - 1)};
+    std::size_t a = valley.first, b = valley.last;
+    while (a < valley.deepest && !(at[a] < below)) ++a;
+    while (b > valley.deepest && !(at[b] < below)) --b;
+    return {a > valley.first ? crossing(a, a - 1) : samples_.place(a),
+            b < valley.last ? crossing(b, b + 1) : samples_.place(b)};
   }
   [[nodiscard]] WheelPatch patch(double deepest, double from, double to, double upwards) const {
     const WheelTouch touch = wheel_.touch_at(deepest);
@@ -91,8 +118,12 @@ class Loading {
     const double step = (to - from) / (kStrips - 2);
     const int before = static_cast<int>((deepest - from) / step) + 1;
     double gap[kStrips];
-    for (int i = 0; i < kStrips; ++i)
-      gap[i] = std::max(cosine * (wheel_.distance(deepest + (i - before) * step) - lowest), 0.);
+    for (int i = 0; i < kStrips; ++i) {
+      const double place = deepest + (i - before) * step;
+      gap[i] = place < from || place > to
+                   ? 1.  // beyond the overlap, or in the next patch
+                   : std::max(cosine * (wheel_.distance(place) - lowest), 0.);
+    }
     const double approach = cosine * upwards;
     const StripPatch strips{
         gap, kStrips, before, step / cosine, (radius_ + touch.growth) / cosine, modulus_};

@@ -2,7 +2,7 @@
 #include <vector>
 
 #include "offline/profile/wheel_rail.h"
-#include "online/contact/strip_patch.h"
+#include "online/patch/strip_patch.h"
 
 namespace railstep {
 

@@ -18,14 +18,16 @@ struct PatchForce {
   double half_width;   // of the ellipse of the same length and area, m
 };
 
+inline constexpr int kMostPatchStrips = 129;
+
 /// Two bodies that touch along strips.
 struct StripPatch {
   const double* gap;  // [strips], along the normal where the bodies just touch, m: at least 0
-  int strips;
-  int deepest;     // the strip whose middle is the point of least gap
-  double width;    // of a strip, m
-  double radius;   // of the wheel in the plane along the rail, m
-  double modulus;  // E / (1 - nu^2) of two like bodies, N/m2
+  int strips;         // at most kMostPatchStrips
+  int deepest;        // the strip whose middle is the point of least gap
+  double width;       // of a strip, m
+  double radius;      // of the wheel in the plane along the rail, m
+  double modulus;     // E / (1 - nu^2) of two like bodies, N/m2
 };
 
 /// The normal force by virtual penetration with semi-elliptic strips: J. Piotrowski and W. Kik, A
