@@ -20,8 +20,9 @@ constexpr double kHertz = 1.0412e-4, kForce = 100e3;  // approach, m, and force,
 
 std::vector<double> gap_of(int strips, double width) {
   std::vector<double> gap;
+  const int middle = strips / 2;
   for (int i = 0; i < strips; ++i) {
-    const double y = (i - strips / 2) * width;
+    const double y = (i - middle) * width;
     gap.push_back(y * y / (2. * kCrown));
   }
   return gap;

@@ -80,7 +80,7 @@ Point on_arc(const HeadArc& arc, double angle) {
           arc.centre[1] + arc.radius * std::cos(angle)};
 }
 
-/// The innermost place of a turned head within `depth` below its top.
+/// The innermost place of a turned head within kGaugeDepth below its top.
 double innermost(const RailHead& head, double top) {
   double least = head.arcs.front().centre[0];
   const double lowest = top - kGaugeDepth;

@@ -15,6 +15,7 @@ constexpr double kSample = 1e-4;        // m, between places where distances are
 constexpr double kNearlyLeast = 20e-6;  // m: minima that far above the least one are refined
 constexpr double kFine = 1e-8;          // m, of a place of contact
 constexpr double kMostRoll = .03;       // rad
+constexpr double kTouches = 1e-8;       // m
 constexpr double kLargeJump = .5e-3;    // m, on the wheel
 constexpr double kJumpWidth = 1e-6;     // m, of a shift
 
@@ -79,6 +80,8 @@ WheelsetTouch touch(const WheelRail& pair, double shift, bool with_roll) {
   }
   const WheelOverRail right(pair, shift, roll), left(pair, -shift, -roll);
   const double r = right.nearest(), l = left.nearest();
+  if (with_roll && !(std::abs(right.distance(r) - left.distance(l)) < kTouches))
+    refuse("E-TOUCH-03", "no roll of up to 0.03 rad brings both wheels onto their rails");
   return {shift, roll, -std::min(right.distance(r), left.distance(l)), right.touch_at(r),
           left.touch_at(l)};
 }

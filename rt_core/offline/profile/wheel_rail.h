@@ -64,7 +64,8 @@ struct WheelsetTouch {
 /// Rigid contact of a wheelset without yaw: each wheel touches at the least vertical distance.
 /// @param with_roll  the wheelset rolls until both wheels touch; else it stays level, as EN 15302
 ///                   takes it, and each wheel touches where it would touch first
-/// Throws Refused where a wheel is not above its rail.
+/// Throws Refused where a wheel is not above its rail, and where no roll of up to 0.03 rad brings
+/// both onto their rails.
 WheelsetTouch touch(const WheelRail& pair, double shift, bool with_roll);
 
 /// touch() at shifts from -range to range.

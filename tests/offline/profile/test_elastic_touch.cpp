@@ -22,11 +22,12 @@ struct OnCrown {
     const double half = std::sqrt(2. * crown * kVirtualPart * approach);
     const double width = 2. * half / strips;
     std::vector<double> gap;
+    const int middle = strips / 2;
     for (int i = 0; i <= strips; ++i) {
-      const double y = (i - strips / 2) * width;
+      const double y = (i - middle) * width;
       gap.push_back(y * y / (2. * crown));
     }
-    return patch_force({gap.data(), strips + 1, strips / 2, width, .46, modulus}, approach);
+    return patch_force({gap.data(), strips + 1, middle, width, .46, modulus}, approach);
   }
 };
 

@@ -93,5 +93,5 @@ TEST_CASE("surfaces that nothing can run on are refused with their place", "[pro
   refused({line(0., .01, 0., 0.), line(.01, .02, 1e-5, 0.)}, "a step of 0.01 mm at 10 mm");
   refused({line(0., .01, 0., 0.), line(.01, .02, -.01, 1.)}, "a kink at 10 mm");
   refused({{0., .03, 0., 0., .02, {}}}, "leaves its circle");
-  refused({line(0., .01, NAN, 0.)}, "not a finite number");
+  refused({line(0., .01, std::nan(""), 0.)}, "not a finite number");
 }

@@ -63,7 +63,7 @@ TEST_CASE("points that are no running surface are refused with their place", "[p
   };
   refused({{0., 0.}, {1e-3, 0.}, {2e-3, 0.}}, 0., "3 points");
   std::vector<Point> points = circle(0.);
-  points[7][1] = NAN;
+  points[7][1] = std::nan("");
   refused(points, 0., "point 8 is not finite");
   points = circle(0.);
   points[9][0] = points[8][0];
