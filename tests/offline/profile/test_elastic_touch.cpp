@@ -4,14 +4,13 @@
 #include <random>
 
 #include "offline/profile/elastic_touch.h"
-#include "section/running_profile.h"
+#include "support/wheel_pair.h"
 
 using namespace railstep;
 
 namespace {
 
-constexpr double kModulus = 210e9 / (1. - .09);
-constexpr double kPlain = kModulus / kOfModulus;  // without the calibrated factor
+constexpr double kPlain = kSteelModulus / kOfModulus;  // without the calibrated factor
 
 /// A wheel of 0.46 m on a crown, by strips over its patch.
 struct OnCrown {
@@ -31,12 +30,6 @@ struct OnCrown {
   }
 };
 
-WheelRail s1002_on_60e1() {
-  const std::string folder = std::string(RAILSTEP_SOURCE) + "/config/profiles/";
-  return {read_wheel_profile(folder + "s1002.toml").growth,
-          read_placed_rail(folder + "60e1.toml", {1. / 40., 1.435}).surface, .75, .46};
-}
-
 // Of CONTACT's rows: G 82 GPa, nu 0.28.
 const Elastic kContact{2. * 82e9 * 1.28, .28};
 
@@ -53,7 +46,7 @@ TEST_CASE("a wheel on a crown of 300 mm is near Hertz", "[profile]") {
   }
   const PatchForce found = wheel.under(low);
   CHECK(1e3 * low == Approx(.1009267).epsilon(1e-3));
-  CHECK(OnCrown{.3, 64, kModulus}.under(.10412e-3).normal == Approx(1e5).epsilon(.015));
+  CHECK(OnCrown{.3, 64, kSteelModulus}.under(.10412e-3).normal == Approx(1e5).epsilon(.015));
   CHECK(1e3 * found.half_length == Approx(7.14625).epsilon(1e-3));
   CHECK(1e-6 * found.pressure == Approx(1157.72).epsilon(1e-3));
   CHECK(found.centre == Approx(0.).margin(1e-9));
@@ -79,7 +72,7 @@ TEST_CASE("the stiffness of a patch is the slope of its force", "[profile]") {
       const double y = (i - 40) / 40.;
       gap[i] = 1e-4 * (a * y * y + b * y * y * y * y + .2 * c * (1. - std::cos(6. * y)));
     }
-    const StripPatch patch{gap, 80, 40, .25e-3, .46, kModulus};
+    const StripPatch patch{gap, 80, 40, .25e-3, .46, kSteelModulus};
     const double approach = 1.2e-4 * part(engine), h = 1e-11;
     const PatchForce at = patch_force(patch, approach);
     const double slope =
@@ -101,7 +94,7 @@ TEST_CASE("strips converge", "[profile]") {
 
 TEST_CASE("no approach has no force", "[profile]") {
   const double gap[] = {0., 1e-5};
-  const StripPatch patch{gap, 2, 0, 1e-3, .46, kModulus};
+  const StripPatch patch{gap, 2, 0, 1e-3, .46, kSteelModulus};
   for (const double approach : {0., -1e-5, std::nan("")}) {
     const PatchForce none = patch_force(patch, approach);
     CHECK(none.normal == 0.);

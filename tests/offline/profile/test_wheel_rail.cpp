@@ -3,17 +3,11 @@
 #include <cmath>
 
 #include "offline/profile/wheel_rail.h"
-#include "section/running_profile.h"
+#include "support/wheel_pair.h"
 
 using namespace railstep;
 
 namespace {
-
-WheelRail pair_of(const std::string& wheel, double inclination) {
-  const std::string folder = std::string(RAILSTEP_SOURCE) + "/config/profiles/";
-  return {read_wheel_profile(folder + wheel).growth,
-          read_placed_rail(folder + "60e1.toml", {inclination, 1.435}).surface, .75, .46};
-}
 
 std::optional<double> conicity(const WheelRail& pair, double amplitude, bool with_roll = true) {
   RadiusDifference of;
@@ -41,7 +35,7 @@ TEST_CASE("S1002 on 60E1 at 1:40 touches where it is known to", "[profile]") {
                              {6.5, 16.80889, 4.16724, -40.099, 17.102, .880, 41.180, 67.361, .593},
                              {7, 18.79511, 6.36060, -41.050, 18.629, 1.479, 41.190, 61.094, .716},
                              {8, 20.84164, 8.62198, -42.331, 20.309, 2.286, 40.817, 54.232, .917}};
-  const WheelRail pair = pair_of("s1002.toml", 1. / 40.);
+  const WheelRail pair = wheel_pair("s1002.toml", 1. / 40.);
   for (const auto& row : known) {
     const WheelsetTouch t = touch(pair, 1e-3 * row[0], true);
     const double found[] = {1e3 * t.radius_difference(),   1e3 * t.roll,
@@ -57,7 +51,7 @@ TEST_CASE("S1002 on 60E1 at 1:40 touches where it is known to", "[profile]") {
 }
 
 TEST_CASE("a wheelset shifted to the left lies as the mirror image", "[profile]") {
-  const WheelRail pair = pair_of("s1002.toml", 1. / 20.);
+  const WheelRail pair = wheel_pair("s1002.toml", 1. / 20.);
   for (const double shift : {.7e-3, 3.1e-3, 6.3e-3}) {
     const WheelsetTouch a = touch(pair, shift, true), b = touch(pair, -shift, true);
     CHECK(a.radius_difference() == Approx(-b.radius_difference()).margin(1e-11));
@@ -69,7 +63,7 @@ TEST_CASE("a wheelset shifted to the left lies as the mirror image", "[profile]"
 
 TEST_CASE("contacts of S1002 on 60E1 jump where they are known to", "[profile]") {
   const auto shifts = [](double inclination) {
-    const WheelRail pair = pair_of("s1002.toml", inclination);
+    const WheelRail pair = wheel_pair("s1002.toml", inclination);
     std::vector<double> at;
     for (const ContactJump& jump : jumps_of(pair, touches(pair, .0065, 1e-4, true), true))
       if (jump.shift > 0.) at.push_back(1e3 * jump.shift);
@@ -92,7 +86,8 @@ TEST_CASE("equivalent conicities of S1002 on 60E1 are the known ones", "[profile
   const double amplitude[] = {.5, 1., 2., 3., 4., 5.};
   const double at_40[] = {.590, .356, .221, .1771, .1588, .1735};
   const double at_20[] = {.0091, .0091, .0092, .0095, .0098, .0102};
-  const WheelRail steep = pair_of("s1002.toml", 1. / 40.), flat = pair_of("s1002.toml", 1. / 20.);
+  const WheelRail steep = wheel_pair("s1002.toml", 1. / 40.),
+                  flat = wheel_pair("s1002.toml", 1. / 20.);
   for (std::size_t i = 0; i < 6; ++i) {
     CAPTURE(amplitude[i]);
     CHECK(conicity(steep, 1e-3 * amplitude[i]).value() == Approx(at_40[i]).margin(6e-4));
@@ -102,7 +97,7 @@ TEST_CASE("equivalent conicities of S1002 on 60E1 are the known ones", "[profile
 
 TEST_CASE("a cone has its own slope as conicity, level; with roll it is larger", "[profile]") {
   for (const auto& [name, slope] : {std::pair("cone_20.toml", .05), {"cone_40.toml", .025}}) {
-    const WheelRail pair = pair_of(name, 1. / 40.);
+    const WheelRail pair = wheel_pair(name, 1. / 40.);
     for (const double amplitude : {1e-3, 2e-3, 4e-3}) {
       CAPTURE(name, amplitude);
       const double level = conicity(pair, amplitude, false).value();
@@ -145,7 +140,7 @@ TEST_CASE("the wavelength of a radius difference is that of its motion", "[profi
 }
 
 TEST_CASE("a wheel beside its rail is refused", "[profile]") {
-  WheelRail pair = pair_of("s1002.toml", 1. / 40.);
+  WheelRail pair = wheel_pair("s1002.toml", 1. / 40.);
   pair.half_distance = .6;
   CHECK_THROWS_WITH(touch(pair, 0., false), Catch::Matchers::Contains("beside its rail"));
 }
