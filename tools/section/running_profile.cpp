@@ -60,10 +60,6 @@ RunningSurface read_sections(const Table& root) {
   return RunningSurface(std::move(pieces));
 }
 
-std::optional<Smoothing> smoothing_of(const SmoothedSurface& made, double tolerance) {
-  return Smoothing{tolerance, made.rms, made.largest};
-}
-
 WheelProfile read_growth(const Table& root, std::string name, std::string source, double back) {
   if (root.has("points_mm") == root.has("section"))
     root.refuse("section", "E-WHEEL-03",
@@ -71,9 +67,9 @@ WheelProfile read_growth(const Table& root, std::string name, std::string source
   if (root.has("section"))
     return {std::move(name), std::move(source), read_sections(root), back, std::nullopt};
   const double tolerance = tolerance_of(root);
-  SmoothedSurface made = smoothed(points_of(root, "points_mm"), tolerance);
-  const std::optional<Smoothing> smoothing = smoothing_of(made, tolerance);
-  return {std::move(name), std::move(source), std::move(made.surface), back, smoothing};
+  const SmoothedPoints made = smoothed(points_of(root, "points_mm"), tolerance);
+  return {std::move(name), std::move(source), through(made.points), back,
+          Smoothing{tolerance, made.rms, made.largest}};
 }
 
 void check_width(const Table& root, const RunningSurface& growth) {
@@ -114,9 +110,9 @@ PlacedRail read_placed_rail(const std::filesystem::path& file, const RailPlace& 
     static_cast<void>(root.choice("kind", {"rail"}));
     std::string name = root.string("name"), source = root.string("source");
     const double tolerance = tolerance_of(root);
-    SmoothedSurface made = placed(points_of(root, "head_points_mm"), place, tolerance);
+    const SmoothedPoints made = smoothed(points_of(root, "head_points_mm"), tolerance);
     root.finish();
-    return {std::move(name), std::move(source), std::move(made.surface),
+    return {std::move(name), std::move(source), placed(made.points, place),
             Smoothing{tolerance, made.rms, made.largest}};
   } catch (const Refused& error) {
     root.refuse(root.has("head_points_mm") ? "head_points_mm" : "half_outline_mm", error.id(),

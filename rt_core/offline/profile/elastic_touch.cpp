@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 
+#include "offline/math/golden_section.h"
 #include "offline/math/refuse.h"
 #include "offline/math/root.h"
 
@@ -11,6 +13,9 @@ namespace railstep {
 namespace {
 
 constexpr int kStrips = 64;               // of a patch
+constexpr double kBesideRail = .5;        // m: distances beside the rail are larger
+constexpr double kFinePlace = 1e-8;       // m
+constexpr double kHeights = 1e-4;         // m, by which they may step where patches join
 constexpr double kFirstApproach = 5e-5;   // m
 constexpr double kMostApproach = 3e-3;    // m
 constexpr double kMostRollBeyond = 2e-3;  // rad, beyond that of rigid contact
@@ -20,19 +25,22 @@ class Loading {
  public:
   Loading(const WheelRail& pair, const Elastic& bodies, double outwards, double roll)
       : wheel_(pair, outwards, roll),
+        roll_(roll),
         radius_(pair.radius),
         modulus_(bodies.young / (1. - bodies.poisson * bodies.poisson)),
         samples_(wheel_.samples()),
-        least_(wheel_.distance(wheel_.nearest())) {
+        least_(wheel_.distance(wheel_.nearest().s)) {
     const std::vector<double>& at = samples_.distance;
     for (std::size_t i = 1; i + 1 < at.size(); ++i)
-      if (at[i] <= at[i - 1] && at[i] < at[i + 1] && at[i] < least_ + kMostApproach)
+      if (at[i] <= at[i - 1] && at[i] < at[i + 1] && at[i] < least_ + kMostApproach &&
+          at[i - 1] < kBesideRail && at[i + 1] < kBesideRail)
         minima_.push_back(i);
   }
 
-  /// A patch under some approach: its deepest sample, and the ridges to its neighbours.
+  /// A patch under some approach: its deepest sample and point, and the ridges to its neighbours.
   struct Valley {
     std::size_t deepest, first, last;
+    double place;  // on the wheel, m
   };
   /// Which minima share a patch under an approach.
   [[nodiscard]] std::vector<Valley> valleys(double approach) const {
@@ -43,27 +51,32 @@ class Loading {
           found.back().deepest = i;
         continue;
       }
-      found.push_back({i, 0, samples_.distance.size() - 1});
+      found.push_back({i, 0, samples_.distance.size() - 1, 0.});
     }
     for (std::size_t k = 1; k < found.size(); ++k)
       found[k - 1].last = found[k].first = ridge(found[k - 1].deepest, found[k].deepest);
+    for (Valley& valley : found)
+      valley.place = golden_section([this](double s) { return -wheel_.distance(s); },
+                                    samples_.place(valley.deepest - 1),
+                                    samples_.place(valley.deepest + 1), kFinePlace)
+                         .first;
     return found;
   }
   [[nodiscard]] std::vector<WheelPatch> under(double approach,
                                               const std::vector<Valley>& all) const {
     std::vector<WheelPatch> patches;
     for (const Valley& valley : all) {
-      const double above = samples_.distance[valley.deepest] - least_;
+      const double above = std::max(wheel_.distance(valley.place) - least_, 0.);
       if (!(approach > above)) continue;
       const auto [from, to] = edges(valley, level(above, approach));
-      patches.push_back(patch(samples_.place(valley.deepest), from, to, approach - above));
+      if (from < valley.place && valley.place < to)
+        patches.push_back(patch(valley.place, from, to, approach - above));
     }
     return patches;
   }
   [[nodiscard]] double upright(double approach, const std::vector<Valley>& all) const {
     double sum = 0.;
-    for (const WheelPatch& p : under(approach, all))
-      sum += p.force.normal * std::cos(p.deepest.angle);
+    for (const WheelPatch& p : under(approach, all)) sum += p.upright;
     return sum;
   }
   [[nodiscard]] WheelLoaded carrying(double force) const {
@@ -72,7 +85,7 @@ class Loading {
     std::vector<Valley> all;
     for (int turn = 0; turn < 4; ++turn) {
       all = valleys(approach);
-      if (!(upright(kMostApproach, all) > force))
+      if (!(force > 0.) || !(upright(kMostApproach, all) > force))
         refuse("E-TOUCH-02",
                "the rails do not carry " + std::to_string(force) + " N with an approach of 3 mm");
       approach = bracketed_root([&](double d) { return upright(d, all) - force; }, 0.,
@@ -113,7 +126,9 @@ class Loading {
   }
   [[nodiscard]] WheelPatch patch(double deepest, double from, double to, double upwards) const {
     const WheelTouch touch = wheel_.touch_at(deepest);
-    const double cosine = std::cos(touch.angle), lowest = wheel_.distance(deepest);
+    const double lowest = wheel_.distance(deepest);
+    const double cosine = std::cos(touch.angle);          // along the wheel's profile
+    const double normal = std::cos(touch.angle + roll_);  // of the normal to the upright
     // Strips to both sides of the deepest point, of a width that covers the overlap.
     const double step = (to - from) / (kStrips - 2);
     const int before = static_cast<int>((deepest - from) / step) + 1;
@@ -122,17 +137,18 @@ class Loading {
       const double place = deepest + (i - before) * step;
       gap[i] = place < from || place > to
                    ? 1.  // beyond the overlap, or in the next patch
-                   : std::max(cosine * (wheel_.distance(place) - lowest), 0.);
+                   : std::max(normal * (wheel_.distance(place) - lowest), 0.);
     }
-    const double approach = cosine * upwards;
+    const double approach = normal * upwards;
     const StripPatch strips{
         gap, kStrips, before, step / cosine, (radius_ + touch.growth) / cosine, modulus_};
     const PatchForce force = patch_force(strips, approach);
-    return {touch, approach, force, wheel_.touch_at(deepest + cosine * force.centre)};
+    return {touch, approach, normal * force.normal, force,
+            wheel_.touch_at(deepest + cosine * force.centre)};
   }
 
   WheelOverRail wheel_;
-  double radius_, modulus_;
+  double roll_, radius_, modulus_;
   WheelOverRail::Samples samples_;
   double least_;
   std::vector<std::size_t> minima_;
@@ -160,7 +176,11 @@ WheelsetLoaded loaded(const WheelRail& pair, const Elastic& bodies, double shift
   const double rigid = touch(pair, shift, true).roll;
   const double roll =
       bracketed_root(uneven, rigid - kMostRollBeyond, rigid + kMostRollBeyond, 1e-9);
-  return {shift, roll, right(roll), left(roll)};
+  WheelsetLoaded found{shift, roll, right(roll), left(roll)};
+  if (!(std::abs(found.right.height - found.left.height) < kHeights))
+    refuse("E-TOUCH-05", "at a shift of " + std::to_string(1e3 * shift) +
+                             " mm no roll lets both wheels carry " + std::to_string(force) + " N");
+  return found;
 }
 
 }  // namespace railstep

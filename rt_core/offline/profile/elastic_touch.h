@@ -15,6 +15,7 @@ struct Elastic {
 struct WheelPatch {
   WheelTouch deepest;  // where the bodies would overlap most
   double approach;     // along the normal, m
+  double upright;      // part of the normal force, N
   PatchForce force;    // its centre is along the contact plane
   WheelTouch centre;   // at the centre of its pressure
 };
@@ -35,9 +36,10 @@ struct WheelsetLoaded {
   [[nodiscard]] double radius_difference() const { return right.growth() - left.growth(); }
 };
 
-/// The wheelset without yaw at a shift under `force` upright on each wheel, N: it rolls until both
-/// wheels carry it. Patches are those of patch_force(), each by itself, with one approach upwards.
-/// Throws Refused as touch() does, and where the rails do not carry the force within 3 mm.
+/// The wheelset without yaw at a shift under `force` upright on each wheel, N, above 0: it rolls
+/// until both wheels carry it. Patches are those of patch_force(), each by itself, with one
+/// approach upwards. Throws Refused as touch() does, where the rails do not carry the force within
+/// 3 mm, and where no roll near that of rigid contact lets both wheels carry it.
 WheelsetLoaded loaded(const WheelRail& pair, const Elastic& bodies, double shift, double force);
 
 }  // namespace railstep

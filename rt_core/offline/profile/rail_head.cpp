@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kSteepest = 89.5 * std::numbers::pi / 180.;  // rad: the surface ends there
 constexpr double kFarJoint = 1e-4;                            // m
-constexpr double kSteepestChord = 3.73;                       // tangent of 75 degrees
+constexpr double kSteepestChord = 5.67;                       // tangent of 80 degrees
 
 /// Segments of the right half of the head: arcs from the crown downwards, then the straight side.
 std::vector<Segment> right_half(const Outline& outline) {
@@ -175,7 +175,7 @@ RunningSurface placed(const RailHead& head, const RailPlace& place) {
   return RunningSurface(std::move(pieces));
 }
 
-SmoothedSurface placed(std::span<const Point> head, const RailPlace& place, double tolerance) {
+RunningSurface placed(std::span<const Point> head, const RailPlace& place) {
   const double angle = std::atan(place.inclination);
   std::vector<Point> points;
   for (const Point& p : head) points.push_back(turned(p, angle));
@@ -205,7 +205,7 @@ SmoothedSurface placed(std::span<const Point> head, const RailPlace& place, doub
   while (to + 1 != points.end() && flat(*to, *(to + 1))) ++to;
   std::vector<Point> surface(from, to + 1);
   for (Point& p : surface) p = {p[0] + .5 * place.gauge - inner, p[1] - (*top)[1]};
-  return smoothed(surface, tolerance);
+  return through(surface);
 }
 
 }  // namespace railstep

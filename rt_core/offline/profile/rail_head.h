@@ -39,13 +39,11 @@ struct RailPlace {
 /// of rail. The innermost point within 14 mm of the top is at half the gauge.
 RunningSurface placed(const RailHead& head, const RailPlace& place);
 
-/// The same of a measured head. Its surface is smoothed() through the points about the top whose
-/// chords are not steeper than 75 degrees.
+/// The same of a measured head without noise. Its surface is through() the points about the top
+/// whose chords are not steeper than 80 degrees.
 /// @param head  (y, z) of a right rail that stands upright, m: y outwards, in the order of y about
 ///              the top, at least down to 14 mm below it on the inner side
-/// @param tolerance  of smoothed(), m
-/// Throws Refused as smoothed() does, and where no point lies 14 mm below the top on the inner
-/// side.
-SmoothedSurface placed(std::span<const Point> head, const RailPlace& place, double tolerance);
+/// Throws Refused as through() does, and where no point lies 14 mm below the top on the inner side.
+RunningSurface placed(std::span<const Point> head, const RailPlace& place);
 
 }  // namespace railstep

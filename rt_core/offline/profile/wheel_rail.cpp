@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 
 #include "offline/math/golden_section.h"
 #include "offline/math/refuse.h"
@@ -15,6 +16,7 @@ constexpr double kSample = 1e-4;        // m, between places where distances are
 constexpr double kNearlyLeast = 20e-6;  // m: minima that far above the least one are refined
 constexpr double kFine = 1e-8;          // m, of a place of contact
 constexpr double kMostRoll = .03;       // rad
+constexpr double kBeside = .5;          // m: distances beside the rail are larger
 constexpr double kTouches = 1e-8;       // m
 constexpr double kLargeJump = .5e-3;    // m, on the wheel
 constexpr double kJumpWidth = 1e-6;     // m, of a shift
@@ -48,23 +50,24 @@ WheelOverRail::Samples WheelOverRail::samples() const {
   return all;
 }
 
-double WheelOverRail::nearest() const {
+WheelOverRail::Nearest WheelOverRail::nearest() const {
   const Samples all = samples();
   const std::vector<double>& at = all.distance;
-  const double lowest = *std::min_element(at.begin(), at.end());
-  if (!(lowest < .5))
+  const auto lowest = std::min_element(at.begin(), at.end());
+  if (!(*lowest < kBeside))
     refuse("E-TOUCH-01",
            "the wheel is beside its rail; expected a gauge, a distance of wheels and "
            "a shift that go together");
-  double found = all.first, least = 1.;
+  Nearest found{all.place(static_cast<std::size_t>(lowest - at.begin())), true};
+  double least = *lowest;
   for (std::size_t i = 1; i + 1 < at.size(); ++i) {
-    if (at[i] > at[i - 1] || at[i] > at[i + 1] || at[i] > lowest + kNearlyLeast) continue;
+    if (at[i] > at[i - 1] || at[i] > at[i + 1] || at[i] > *lowest + kNearlyLeast) continue;
+    if (at[i - 1] > kBeside || at[i + 1] > kBeside) continue;  // the rail's edge
     const auto [place, depth] = golden_section([this](double s) { return -distance(s); },
                                                all.place(i - 1), all.place(i + 1), kFine);
-    if (-depth < least) {
-      found = place;
-      least = -depth;
-    }
+    if (-depth > least) continue;
+    found = {place, false};
+    least = -depth;
   }
   return found;
 }
@@ -74,16 +77,21 @@ WheelsetTouch touch(const WheelRail& pair, double shift, bool with_roll) {
   if (with_roll) {
     const auto uneven = [&](double angle) {
       const WheelOverRail right(pair, shift, angle), left(pair, -shift, -angle);
-      return right.distance(right.nearest()) - left.distance(left.nearest());
+      return right.distance(right.nearest().s) - left.distance(left.nearest().s);
     };
     roll = bracketed_root(uneven, -kMostRoll, kMostRoll, 1e-13);
   }
   const WheelOverRail right(pair, shift, roll), left(pair, -shift, -roll);
-  const double r = right.nearest(), l = left.nearest();
-  if (with_roll && !(std::abs(right.distance(r) - left.distance(l)) < kTouches))
+  const WheelOverRail::Nearest r = right.nearest(), l = left.nearest();
+  if (r.at_edge || l.at_edge)
+    refuse("E-TOUCH-04", "at a shift of " + std::to_string(1e3 * shift) +
+                             " mm a wheel touches at the edge of a profile; expected profiles that "
+                             "reach beyond their contacts");
+  const double right_distance = right.distance(r.s), left_distance = left.distance(l.s);
+  if (with_roll && !(std::abs(right_distance - left_distance) < kTouches))
     refuse("E-TOUCH-03", "no roll of up to 0.03 rad brings both wheels onto their rails");
-  return {shift, roll, -std::min(right.distance(r), left.distance(l)), right.touch_at(r),
-          left.touch_at(l)};
+  return {shift, roll, -std::min(right_distance, left_distance), right.touch_at(r.s),
+          left.touch_at(l.s)};
 }
 
 std::vector<WheelsetTouch> touches(const WheelRail& pair, double range, double spacing,
@@ -157,6 +165,7 @@ std::optional<double> equivalent_conicity(const RadiusDifference& of, double amp
     const double angle = M_PI * (i + .5) / kPlaces;
     const double y = from + amplitude * (1. - std::cos(angle));
     const double above = end - potential(y);
+    if (above < -kLevel) return std::nullopt;  // the wheelset turns back before
     deepest = std::max(deepest, above);
     length += amplitude * std::sin(angle) / std::sqrt(std::max(2. * above, 1e-300));
   }

@@ -32,9 +32,13 @@ class WheelOverRail {
   /// beside the rail.
   [[nodiscard]] double distance(double s) const;
   [[nodiscard]] WheelTouch touch_at(double s) const;
-  /// The place on the wheel of least distance, m. Throws Refused where the wheel is beside its
-  /// rail.
-  [[nodiscard]] double nearest() const;
+  /// The place on the wheel of least distance, m, and whether a profile ends there. Throws Refused
+  /// where the wheel is beside its rail.
+  struct Nearest {
+    double s;
+    bool at_edge;
+  };
+  [[nodiscard]] Nearest nearest() const;
   /// Distances at places from the first to the last of the wheel, 0.1 mm apart.
   struct Samples {
     double first, step;
@@ -64,8 +68,8 @@ struct WheelsetTouch {
 /// Rigid contact of a wheelset without yaw: each wheel touches at the least vertical distance.
 /// @param with_roll  the wheelset rolls until both wheels touch; else it stays level, as EN 15302
 ///                   takes it, and each wheel touches where it would touch first
-/// Throws Refused where a wheel is not above its rail, and where no roll of up to 0.03 rad brings
-/// both onto their rails.
+/// Throws Refused where a wheel is not above its rail or touches at the edge of a profile, and
+/// where no roll of up to 0.03 rad brings both onto their rails.
 WheelsetTouch touch(const WheelRail& pair, double shift, bool with_roll);
 
 /// touch() at shifts from -range to range.

@@ -58,7 +58,8 @@ CreepPair<Real> linear(const CreepPatch& p, const Creepages<Real>& c) noexcept {
 
 /// Shen, Hedrick and Elkins (1983): the size of the linear force u over the limit becomes u - u^2/3
 /// + u^3/27, and 1 from u = 3 on. As it saturates the force turns towards the slip: along (C1 xi,
-/// C2 eta + spin's part) with C_i = (1 - w) c_ii + w (c11 + c22)/2, w = min(1, u/3)^2.
+/// C2 eta + spin's part) with C_i = (1 - w) c_ii + w (c11 + c22)/2, w = min(1, u/3)^2. The force is
+/// continuous at u = 3; its derivatives step there by what the turn ends with.
 template <class Real>
 CreepPair<Real> she(const CreepPatch& p, const Creepages<Real>& c) noexcept {
   using std::sqrt;
@@ -77,7 +78,7 @@ CreepPair<Real> she(const CreepPatch& p, const Creepages<Real>& c) noexcept {
   return {factor * x, factor * y};
 }
 
-/// The arc tangent by three halvings and Taylor's series, within 1e-15 for values of any size.
+/// The arc tangent by three halvings and Taylor's series, within 1e-15 for values up to 1e150.
 template <class Real>
 Real arc_tangent(Real x) noexcept {
   using std::sqrt;
@@ -88,7 +89,7 @@ Real arc_tangent(Real x) noexcept {
   return 8. * x * sum;
 }
 
-/// exp(-x) for x of at least 0, within 1e-13 of its value up to 30.
+/// exp(-x) for x of at least 0, within 1e-12.
 inline double falling_exponential(double x) noexcept {
   const double small = x / 1024.;
   double e = 1. - small * (1. - small / 2. * (1. - small / 3. * (1. - small / 4.)));
@@ -106,7 +107,7 @@ CreepPair<Real> polach(const CreepPatch& p, const Creepages<Real>& c) noexcept {
   const bool larger = magnitude(value_of(corrected)) > magnitude(value_of(c.across));
   const Real across = larger ? corrected : c.across;
   const Real square = c.along * c.along + across * across;
-  if (!(value_of(square) > 1e-30)) return {Real(0.), Real(0.)};
+  if (!(value_of(square) > 1e-30)) return linear(p, c);
   const Real slip = sqrt(square);
   // The stiffness along the slip without spin.
   const Real plain = c.along * c.along + c.across * c.across;
@@ -123,11 +124,10 @@ CreepPair<Real> polach(const CreepPatch& p, const Creepages<Real>& c) noexcept {
   const Real size = value_of(across) < 0. ? -across : across;
   const double by_spin = p.shear * p.kalker.c23 * std::sqrt(area);
   const Real of_spin = (8. * by_spin * area / (3. * p.limit * a * more)) * size;
-  const Real over = of_spin * of_spin;
-  const Real delta = (over - 1.) / (over + 1.);
-  const Real rest = 1. - delta * delta;
-  const Real moment = of_spin * (delta * delta * delta * (1. / 3.) - delta * delta * .5 + 1. / 6.) -
-                      (1. / 3.) * rest * sqrt(rest);
+  // With delta = (of_spin^2 - 1) / (of_spin^2 + 1): eta is 1 - delta, `root` that of 1 - delta^2.
+  const Real eta = 2. / (1. + of_spin * of_spin), root = of_spin * eta;
+  const Real moment =
+      of_spin * (eta * eta * (.5 - eta * (1. / 3.))) - (1. / 3.) * root * root * root;
   const Real spin_force = (9. / 16.) * a * p.limit * more * moment * c.spin / slip;
   return {force * c.along / slip, force * c.across / slip + spin_force};
 }

@@ -114,7 +114,7 @@ TEST_CASE("rolling radii under 60 kN are within 8 % of those of CONTACT", "[prof
     CAPTURE(shift);
     CHECK(found == Approx(contact[i]).epsilon(.08));
     double sum = 0.;
-    for (const WheelPatch& p : w.right.patches) sum += p.force.normal * std::cos(p.deepest.angle);
+    for (const WheelPatch& p : w.right.patches) sum += p.upright;
     CHECK(sum == Approx(60e3).epsilon(1e-6));
   }
 }
@@ -152,7 +152,7 @@ TEST_CASE("the rails carry the load that is asked for, beside jumps of the conta
       CAPTURE(force, shift);
       for (const WheelLoaded& wheel : {w.right, w.left}) {
         double sum = 0.;
-        for (const WheelPatch& p : wheel.patches) sum += p.force.normal * std::cos(p.deepest.angle);
+        for (const WheelPatch& p : wheel.patches) sum += p.upright;
         CHECK(sum == Approx(force).epsilon(1e-5));
       }
       // Where two patches become one as the wheelset rolls, heights step.

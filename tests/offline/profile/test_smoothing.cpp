@@ -10,13 +10,13 @@ using Catch::Matchers::Contains;
 
 namespace {
 
-/// Heights of a circle's top, R 80 mm, 0.5 mm apart, with noise.
-std::vector<Point> circle(double noise) {
+/// Heights of a circle's top, R 80 mm, 40 mm wide, with noise.
+std::vector<Point> circle(double noise, int half = 40) {
   std::mt19937 engine(11);
   std::normal_distribution<double> error(0., 1.);
   std::vector<Point> points;
-  for (int i = -40; i <= 40; ++i) {
-    const double y = .5e-3 * i;
+  for (int i = -half; i <= half; ++i) {
+    const double y = .02 * i / half;
     points.push_back({y, std::sqrt(.08 * .08 - y * y) + noise * error(engine)});
   }
   return points;
@@ -35,31 +35,32 @@ double curvature_error(const RunningSurface& surface) {
 
 TEST_CASE("a spline without tolerance goes through its points", "[profile]") {
   const std::vector<Point> points = circle(0.);
-  const SmoothedSurface made = smoothed(points, 0.);
-  for (const Point& p : points) CHECK(made.surface.at(p[0]).height == Approx(p[1]).epsilon(1e-12));
-  CHECK(curvature_error(made.surface) < 1e-3);
+  const SmoothedPoints made = smoothed(points, 0.);
+  for (const Point& p : points)
+    CHECK(through(made.points).at(p[0]).height == Approx(p[1]).epsilon(1e-12));
+  CHECK(curvature_error(through(made.points)) < 1e-3);
   CHECK(made.largest < 1e-12);
 }
 
 TEST_CASE("smoothing takes the noise out of the curvature", "[profile]") {
   // 5 um of noise, 0.5 mm apart: the second difference is noise alone.
   const std::vector<Point> points = circle(5e-6);
-  CHECK(curvature_error(smoothed(points, 0.).surface) > 2.);
-  const SmoothedSurface made = smoothed(points, 5e-6);
-  CHECK(curvature_error(made.surface) < .3);
+  CHECK(curvature_error(through(points)) > 2.);
+  const SmoothedPoints made = smoothed(points, 5e-6);
+  CHECK(curvature_error(through(made.points)) < .3);
   CHECK(made.rms == Approx(5e-6).epsilon(1e-6));
   CHECK(made.largest < 3e-5);
 }
 
 TEST_CASE("a tolerance beyond a straight line gives that line", "[profile]") {
-  const SmoothedSurface made = smoothed(circle(0.), .01);
-  CHECK(std::abs(made.surface.at(0.).curvature) < 1e-5);
+  const SmoothedPoints made = smoothed(circle(0.), .01);
+  CHECK(std::abs(through(made.points).at(0.).curvature) < 1e-5);
   CHECK(made.rms < .01);
 }
 
 TEST_CASE("points that are no running surface are refused with their place", "[profile]") {
   const auto refused = [](std::vector<Point> points, double tolerance, const char* words) {
-    CHECK_THROWS_WITH(smoothed(points, tolerance), Contains(words));
+    CHECK_THROWS_WITH(through(smoothed(points, tolerance).points), Contains(words));
   };
   refused({{0., 0.}, {1e-3, 0.}, {2e-3, 0.}}, 0., "3 points");
   std::vector<Point> points = circle(0.);
@@ -75,7 +76,7 @@ TEST_CASE("points that are no running surface are refused with their place", "[p
   for (std::size_t i = 50; i < points.size(); ++i)
     points[i][1] -= .8 * (points[i][0] - points[49][0]);
   refused(points, 0., "rad at 4.5");
-  points = circle(2e-6);
-  points[30][1] += 1e-4;
+  points = circle(2e-6, 100);
+  points[75][1] += 1e-4;
   refused(points, 5e-6, "the point at -5.0");
 }

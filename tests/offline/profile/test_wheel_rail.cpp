@@ -144,3 +144,21 @@ TEST_CASE("a wheel beside its rail is refused", "[profile]") {
   pair.half_distance = .6;
   CHECK_THROWS_WITH(touch(pair, 0., false), Catch::Matchers::Contains("beside its rail"));
 }
+
+TEST_CASE("a wheel that ends where it touches is refused", "[profile]") {
+  WheelRail pair = s1002_on_60e1();
+  pair.wheel = RunningSurface({{-.03, -.01, 0., 0., 0., {0., -.05}}});
+  CHECK_THROWS_WITH(touch(pair, 0., false), Catch::Matchers::Contains("edge of a profile"));
+}
+
+TEST_CASE("a wheelset that turns back half-way has no wave", "[profile]") {
+  // V = y^4/4 - a^2 y^2/2 rises in the middle: at 3 mm the wheelset stays on one side.
+  RadiusDifference of;
+  for (int i = -800; i <= 800; ++i) {
+    const double y = 1e-5 * i;
+    of.shift.push_back(y);
+    of.difference.push_back(1e5 * y * (y * y - 9e-6));
+  }
+  CHECK_FALSE(equivalent_conicity(of, 3e-3, 1.5, .46).has_value());
+  CHECK(equivalent_conicity(of, 6e-3, 1.5, .46).value() > 0.);
+}

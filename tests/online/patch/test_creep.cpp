@@ -163,7 +163,7 @@ TEST_CASE("small creepages have Kalker's linear forces", "[creep]") {
   for (const double ratio : {.1, .33, 1., 2.2, 10.}) {
     const Kalker k = kalker(ratio, .3);
     const CreepPatch patch = normalised_patch(ratio, k);
-    for (const CreepLaw law : {CreepLaw::linear, CreepLaw::she, CreepLaw::fastsim}) {
+    for (const CreepLaw law : kLaws) {
       const bool cells = law == CreepLaw::fastsim;
       const CreepForce force = creep_force(law, 100, patch, {0., 0., 0.});
       CAPTURE(ratio, static_cast<int>(law));
@@ -181,6 +181,19 @@ TEST_CASE("small creepages have Kalker's linear forces", "[creep]") {
     CHECK(-polach(0., 1., 0.).y / small == Approx(k.c22).epsilon(1e-4));
     CHECK(-polach(0., 0., 1.).y / small == Approx(k.c23).epsilon(1e-4));
   }
+}
+
+TEST_CASE("creep forces of any size of creepage have finite derivatives", "[creep]") {
+  const CreepPatch patch = normalised_patch(2., kalker(2., .3));
+  for (const CreepLaw law : kLaws)
+    for (const double size : {0., 1e-12, 1e-9, 1e-3, 1., 1e3, 1e9})
+      for (int mask = 1; mask < 8; ++mask) {
+        const CreepForce force = creep_force(
+            law, 10, patch, {size * (mask & 1), size * (mask >> 1 & 1), size * (mask >> 2 & 1)});
+        CAPTURE(static_cast<int>(law), size, mask);
+        CHECK(std::isfinite(force.x + force.y));
+        for (int k = 0; k < 3; ++k) CHECK(std::isfinite(force.slope[0][k] + force.slope[1][k]));
+      }
 }
 
 TEST_CASE("creep takes energy and keeps to its limit", "[creep]") {
