@@ -15,10 +15,9 @@ namespace {
 constexpr int kStrips = 64;               // of a patch
 constexpr double kBesideRail = .5;        // m: distances beside the rail are larger
 constexpr double kFinePlace = 1e-8;       // m
-constexpr double kHeights = 1e-4;         // m, by which they may step where patches join
 constexpr double kFirstApproach = 5e-5;   // m
 constexpr double kMostApproach = 3e-3;    // m
-constexpr double kMostRollBeyond = 2e-3;  // rad, beyond that of rigid contact
+constexpr double kMostRollBeyond = 1e-2;  // rad, beyond that of rigid contact
 
 /// Carries approaches of one wheel over its rail to patches.
 class Loading {
@@ -174,13 +173,12 @@ WheelsetLoaded loaded(const WheelRail& pair, const Elastic& bodies, double shift
   };
   const auto uneven = [&](double roll) { return left(roll).height - right(roll).height; };
   const double rigid = touch(pair, shift, true).roll;
-  const double roll =
-      bracketed_root(uneven, rigid - kMostRollBeyond, rigid + kMostRollBeyond, 1e-9);
-  WheelsetLoaded found{shift, roll, right(roll), left(roll)};
-  if (!(std::abs(found.right.height - found.left.height) < kHeights))
+  const double low = rigid - kMostRollBeyond, high = rigid + kMostRollBeyond;
+  if (!(uneven(low) < 0.) || !(uneven(high) > 0.))
     refuse("E-TOUCH-05", "at a shift of " + std::to_string(1e3 * shift) +
                              " mm no roll lets both wheels carry " + std::to_string(force) + " N");
-  return found;
+  const double roll = bracketed_root(uneven, low, high, 1e-9);
+  return {shift, roll, right(roll), left(roll)};
 }
 
 }  // namespace railstep
