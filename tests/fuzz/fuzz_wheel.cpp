@@ -23,7 +23,7 @@ void check_surface(const RunningSurface& surface) {
   }
 }
 
-/// What is accepted touches at finite places and carries its load, or says why not.
+/// An accepted surface touches at finite places and carries its load, or a refusal says why not.
 void check_pair(const RunningSurface& wheel, const RunningSurface& rail) {
   const WheelRail pair{wheel, rail, .75, .46};
   const auto refuse_or = [](const auto& f) {

@@ -6,7 +6,7 @@ namespace railstep {
 /// The place between two others at which a function of opposite signs there is 0: false position
 /// with Illinois' weights, bisected where it is slow. Also right at a jump through 0. Where the
 /// signs are alike, the result means nothing: the caller looks at it.
-/// @param width  the search ends where the places are no farther apart
+/// @param width  the search ends where the places are at most this far apart
 template <class Function>
 double bracketed_root(const Function& of, double low, double high, double width) {
   double at_low = of(low), at_high = of(high);

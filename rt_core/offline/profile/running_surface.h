@@ -27,8 +27,8 @@ class RunningSurface {
   static constexpr double kLargestKink = 1e-3;  // rad
 
   /// @param pieces  side by side, in the order of y
-  /// Throws Refused where there is none, where a piece is empty, not finite, longer than its circle
-  /// or leaves a gap to the next, and where the joint of two is a step or a kink.
+  /// Throws Refused for no pieces, for a piece that is empty, not finite or longer than its circle,
+  /// and for two pieces with a gap, a step or a kink between them.
   explicit RunningSurface(std::vector<SurfacePiece> pieces);
 
   /// @param y  m, from first() to last(); beyond them the end piece goes on

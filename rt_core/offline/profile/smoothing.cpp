@@ -20,10 +20,13 @@ using Sparse = Eigen::SparseMatrix<double>;
 
 std::string place_of(const Point& p) { return std::to_string(1e3 * p[0]) + " mm"; }
 
+void check_count(std::size_t points) {
+  if (points < 4)
+    refuse("E-POINTS-01", "there are " + std::to_string(points) + " points; expected at least 4");
+}
+
 void check_points(std::span<const Point> points) {
-  if (points.size() < 4)
-    refuse("E-POINTS-01",
-           "there are " + std::to_string(points.size()) + " points; expected at least 4");
+  check_count(points.size());
   std::vector<double> spacing;
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (!std::isfinite(points[i][0]) || !std::isfinite(points[i][1]))
@@ -59,6 +62,22 @@ void check_kinks(std::span<const Point> points) {
   }
 }
 
+/// The matrix that makes jumps of the chords' slopes of a cubic spline's second derivatives at its
+/// inner points. @param h  spacings
+Sparse over_spacings(const Eigen::VectorXd& h) {
+  const Eigen::Index inner = h.size() - 1;
+  std::vector<Eigen::Triplet<double>> entries;
+  for (Eigen::Index i = 0; i < inner; ++i) {
+    entries.emplace_back(i, i, (h[i] + h[i + 1]) / 3.);
+    if (i + 1 == inner) continue;
+    entries.emplace_back(i, i + 1, h[i + 1] / 6.);
+    entries.emplace_back(i + 1, i, h[i + 1] / 6.);
+  }
+  Sparse matrix(inner, inner);
+  matrix.setFromTriplets(entries.begin(), entries.end());
+  return matrix;
+}
+
 /// Reinsch's problem for both coordinates over the length of the chords: with values z, second
 /// derivatives g at inner points and mean spacing 1,
 ///   (R + p Q'Q) g = Q' z,  f = z - p Q g.
@@ -67,33 +86,22 @@ class Reinsch {
   using Values = Eigen::Matrix<double, Eigen::Dynamic, 2>;
 
   explicit Reinsch(std::span<const Point> points)
-      : count_(static_cast<int>(points.size())),
-        z_(count_, 2),
-        Q_(count_, count_ - 2),
-        R_(count_ - 2, count_ - 2) {
-    std::vector<double> h;
-    double length = 0.;
+      : count_(static_cast<int>(points.size())), z_(count_, 2), Q_(count_, count_ - 2) {
+    Eigen::VectorXd h(count_ - 1);
     for (int i = 0; i < count_; ++i) {
       const auto k = static_cast<std::size_t>(i);
       z_.row(i) << points[k][0], points[k][1];
-      if (i > 0) h.push_back(distance(points[k - 1], points[k]));
-      if (i > 0) length += h.back();
+      if (i > 0) h[i - 1] = distance(points[k - 1], points[k]);
     }
-    for (double& spacing : h) spacing *= (count_ - 1) / length;
-    std::vector<Eigen::Triplet<double>> q, r;
+    h /= h.mean();
+    std::vector<Eigen::Triplet<double>> q;
     for (int i = 0; i + 2 < count_; ++i) {
-      const double a = h[static_cast<std::size_t>(i)], b = h[static_cast<std::size_t>(i) + 1];
-      q.emplace_back(i, i, 1. / a);
-      q.emplace_back(i + 1, i, -1. / a - 1. / b);
-      q.emplace_back(i + 2, i, 1. / b);
-      r.emplace_back(i, i, (a + b) / 3.);
-      if (i + 3 < count_) {
-        r.emplace_back(i, i + 1, b / 6.);
-        r.emplace_back(i + 1, i, b / 6.);
-      }
+      q.emplace_back(i, i, 1. / h[i]);
+      q.emplace_back(i + 1, i, -1. / h[i] - 1. / h[i + 1]);
+      q.emplace_back(i + 2, i, 1. / h[i + 1]);
     }
     Q_.setFromTriplets(q.begin(), q.end());
-    R_.setFromTriplets(r.begin(), r.end());
+    R_ = over_spacings(h);
   }
   /// The smoothed points.
   [[nodiscard]] Values at(double p) const {
@@ -128,6 +136,7 @@ class Reinsch {
 }  // namespace
 
 RunningSurface through(std::span<const Point> points) {
+  check_count(points.size());
   const auto count = static_cast<Eigen::Index>(points.size());
   Eigen::VectorXd y(count), z(count);
   for (Eigen::Index i = 0; i < count; ++i) {
@@ -142,19 +151,10 @@ RunningSurface through(std::span<const Point> points) {
                                 " mm is not beyond the one before it; expected lateral places "
                                 "that rise");
   const Eigen::VectorXd chord = (z.tail(count - 1) - z.head(count - 1)).cwiseQuotient(h);
-  std::vector<Eigen::Triplet<double>> entries;
-  for (Eigen::Index i = 0; i + 2 < count; ++i) {
-    entries.emplace_back(i, i, (h[i] + h[i + 1]) / 3.);
-    if (i + 3 < count) {
-      entries.emplace_back(i, i + 1, h[i + 1] / 6.);
-      entries.emplace_back(i + 1, i, h[i + 1] / 6.);
-    }
-  }
-  Sparse A(count - 2, count - 2);
-  A.setFromTriplets(entries.begin(), entries.end());
   Eigen::VectorXd second = Eigen::VectorXd::Zero(count);
-  second.segment(1, count - 2) = Eigen::SimplicialLDLT<Sparse>(A).solve(
-      Eigen::VectorXd(chord.tail(count - 2) - chord.head(count - 2)));
+  second.segment(1, count - 2) =
+      Eigen::SimplicialLDLT<Sparse>(over_spacings(h))
+          .solve(Eigen::VectorXd(chord.tail(count - 2) - chord.head(count - 2)));
   std::vector<SurfacePiece> pieces;
   for (Eigen::Index i = 0; i + 1 < count; ++i) {
     const double a = second[i], b = second[i + 1];

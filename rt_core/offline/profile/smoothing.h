@@ -24,7 +24,8 @@ struct SmoothedPoints {
 /// four times the mean of the turns beside it) and a point that lies over 8 tolerances off.
 SmoothedPoints smoothed(std::span<const Point> points, double tolerance);
 
-/// The natural cubic spline through points. Throws Refused where their places do not rise.
+/// The natural cubic spline through points. Throws Refused for fewer than 4 points, and where their
+/// places do not rise.
 RunningSurface through(std::span<const Point> points);
 
 }  // namespace railstep

@@ -8,7 +8,7 @@ namespace railstep {
 
 namespace {
 
-/// What strips give to the sums of the law, side by side.
+/// Terms of the sums of the law, one for each strip, side by side.
 struct Terms {
   double square[kMostPatchStrips];  // l^2
   double length[kMostPatchStrips];  // l

@@ -8,7 +8,7 @@ inline constexpr double kVirtualPart = .55;
 /// patches of 10 kN is that of the half-space (docs/wheel-rail.md has others to compare with).
 inline constexpr double kOfModulus = .966;
 
-/// What a contact patch is under an approach.
+/// A contact patch under an approach: its force and its shape.
 struct PatchForce {
   double normal;       // N
   double stiffness;    // of the normal force over the approach, N/m

@@ -30,7 +30,7 @@ struct OnCrown {
   }
 };
 
-// Of CONTACT's rows: G 82 GPa, nu 0.28.
+// The material of the CONTACT rows: G 82 GPa, nu 0.28.
 const Elastic kContact{2. * 82e9 * 1.28, .28};
 
 }  // namespace

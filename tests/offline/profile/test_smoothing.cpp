@@ -58,11 +58,12 @@ TEST_CASE("a tolerance beyond a straight line gives that line", "[profile]") {
   CHECK(made.rms < .01);
 }
 
-TEST_CASE("points that are no running surface are refused with their place", "[profile]") {
+TEST_CASE("points of no running surface are refused with their place", "[profile]") {
   const auto refused = [](std::vector<Point> points, double tolerance, const char* words) {
     CHECK_THROWS_WITH(through(smoothed(points, tolerance).points), Contains(words));
   };
   refused({{0., 0.}, {1e-3, 0.}, {2e-3, 0.}}, 0., "3 points");
+  CHECK_THROWS_WITH(through(std::vector<Point>{{0., 0.}}), Contains("1 points"));
   std::vector<Point> points = circle(0.);
   points[7][1] = std::nan("");
   refused(points, 0., "point 8 is not finite");
