@@ -124,7 +124,7 @@ TEST_CASE("a spring of a system pulls a leaning rail along the track's axes", "[
   const std::string scene = track_of(.05, "", "released") + kWheels;
   const Forces in_seat = forces_of(scene + kInSeat), joined = forces_of(scene + kJoined);
   // A seat's force also counts on the roll of the rail (docs/cant.md), that of a system not.
-  CHECK(difference(joined, in_seat) < 1e-3);
+  CHECK(difference(joined, in_seat) < 2e-4);
   CHECK(difference(joined, forces_of(scene)) > 1e-2);
 }
 

@@ -92,6 +92,25 @@ TEST_CASE("on a track that gives way runs hunt from the critical speed that is f
   }
 }
 
+TEST_CASE("creep with a limit keeps the speed from which a vehicle hunts", "[rail_vehicle]") {
+  for (const char* law : {"she", "polach", "fastsim"}) {
+    INFO(law);
+    Words words{std::string("contact={wheel=\"cone\",slope=0.168206167,rail=\"crown\",normal="
+                            "\"hertz\",friction=0.3,creep=\"") +
+                law + "\"}"};
+    const auto found = critical_speed_between(straight(words), 60., 120.);
+    REQUIRE(found);
+    const auto at = [&](double part) {
+      Words own = words;
+      own.push_back(set("vehicle[0].speed_m_per_s", part * found->speed));
+      return straight(own);
+    };
+    INFO(found->speed);
+    CHECK(growth(at(.99), 40.) < 0.);
+    CHECK(growth(at(1.01), 40.) > 0.);
+  }
+}
+
 TEST_CASE("a vehicle that runs steadily keeps its static wheel loads", "[rail_vehicle]") {
   for (const char* kind : {"full", "modal"})
     for (const double speed : {20., 60., 0.}) {
@@ -117,16 +136,20 @@ TEST_CASE("a vehicle that runs steadily keeps its static wheel loads", "[rail_ve
 }
 
 TEST_CASE("the energy of a vehicle on rough rails is balanced", "[rail_vehicle]") {
-  double error = 0.;
-  for (const double dt : {1e-3, 5e-4}) {
-    const Scene scene = straight({set("step.dt_s", dt), "step.duration_s=2.0", kRough});
-    const Simulation run(scene);
-    const EnergyBalance balance = balance_of(*run.packed(), run.model(), run.model().steps);
-    INFO("step of " << dt << " s: error " << balance.error << ", loss " << balance.numerical_loss);
-    CHECK(balance.error < 1e-4);
-    CHECK(std::fabs(balance.numerical_loss) < 1e-4);
-    if (error > 0.) CHECK(balance.error < .6 * error);
-    error = balance.error;
+  for (const Words& creep : {Words{}, {"contact.creep=\"she\"", "contact.friction=0.08"}}) {
+    double error = 0.;
+    for (const double dt : {1e-3, 5e-4}) {
+      Words words{set("step.dt_s", dt), "step.duration_s=2.0", kRough};
+      words.insert(words.end(), creep.begin(), creep.end());
+      const Simulation run(straight(words));
+      const EnergyBalance balance = balance_of(*run.packed(), run.model(), run.model().steps);
+      INFO("step of " << dt << " s: error " << balance.error << ", loss "
+                      << balance.numerical_loss);
+      CHECK(balance.error < 1e-4);
+      CHECK(std::fabs(balance.numerical_loss) < 1e-4);
+      if (error > 0.) CHECK(balance.error < .6 * error);
+      error = balance.error;
+    }
   }
 }
 

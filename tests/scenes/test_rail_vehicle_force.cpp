@@ -161,3 +161,73 @@ TEST_CASE("a sensor on a vehicle in space moves as the point of its rigid body",
   CHECK(by_v == Approx(seat_y.back() - seat_y.front()).margin(1e-3 * largest_v * .2));
   CHECK(by_a == Approx(v.back() - v.front()).margin(1e-2 * largest_v));
 }
+
+TEST_CASE("a braked wheelset creeps as its law says, and slides at the limit of friction",
+          "[rail_vehicle][inputs]") {
+  // Treads without slope, so that there is no spin. Shen, Hedrick and Elkins: T / (mu N) is
+  // 1 - (1 - u/3)^3, u the linear creep force over mu N.
+  constexpr double kFriction = .25, kF11 = 9.25e6, kRadius = .46, kSpeed = 40.;
+  const Words changes{"contact.creep=\"she\"", "contact.slope=0.0",
+                      "vehicle[0].speed_m_per_s=" + std::to_string(kSpeed), "step.duration_s=1.0"};
+  const auto braked = [&](double moment, const std::string& kind, double right) {
+    Words words = changes;
+    words.push_back("contact.friction=[" + std::to_string(kFriction) + "," + std::to_string(right) +
+                    "]");
+    words.push_back("condense.kind=\"" + kind + "\"");
+    return straight("body=\"leading_1\",direction=\"pitch\",table=[[0.0,0.0],[0.2," +
+                        std::to_string(-moment) + "]]",
+                    words);
+  };
+  const Traced rolling(braked(0., "full", kFriction));
+  const double q = rolling["car.leading_1_left.q_n"].back();
+  CHECK(rolling.status == Status::ok);
+  const double limit = 2. * kFriction * q * kRadius;  // of the moment, N m
+  for (const std::string kind : {"full", "modal"}) {
+    for (const double part : {.3, .9}) {
+      INFO(kind << ", " << part);
+      Simulation run(braked(part * limit, kind, kFriction));
+      const Model& model = run.model();
+      const RunnerModel& runner = model.runner[0];
+      const double* const v = run.state.v + runner.first + runner.wheelset[0].first;
+      const double* const f = wheel_force_of(run.state, 0, 0);
+      Outputs outputs{};
+      double before = 0., force = 0.;
+      for (std::int64_t n = 0; n < model.steps; ++n) {
+        if (n == model.steps - 20) before = v[4];
+        REQUIRE(advance_frame(model, run.state, run.workspace, outputs) == Status::ok);
+        if (n >= model.steps - 20) force -= f[0] / 20.;
+      }
+      // The bogie swings along the car, and the spin with it.
+      const double slowed = (before - v[4]) / (20. * model.scheme.dt);
+      CHECK(2. * force * kRadius + slowed * runner.wheelset[0].spin_inertia ==
+            Approx(part * limit).epsilon(2e-3));
+      const double used = -f[0] / (kFriction * f[2]);  // the car's pitch moves wheel loads
+      const double creepage = 3. * (1. - std::cbrt(1. - used)) * kFriction * f[2] / kF11;
+      // The wheel rolls on the radius that its contact leaves it.
+      const double sunk = std::pow(f[2] / runner.contact.hertz, 2. / 3.) / kRadius;
+      CHECK((v[0] - v[4] * kRadius) / kSpeed + sunk == Approx(creepage).epsilon(1e-3));
+    }
+    // Beyond the limit the wheelset's spin slows by what friction leaves of the moment.
+    INFO(kind);
+    constexpr double kRight = .2;
+    Simulation run(braked(1.2 * limit, kind, kRight));
+    const Model& model = run.model();
+    const RunnerModel& runner = model.runner[0];
+    const double& spin = run.state.v[runner.first + runner.wheelset[0].first + 4];
+    Outputs outputs{};
+    Status met = Status::ok;
+    double before = 0., friction = 0.;
+    for (std::int64_t n = 0; n < model.steps; ++n) {
+      if (n == model.steps - 100) before = spin;
+      met = met | advance_frame(model, run.state, run.workspace, outputs);
+      if (n >= model.steps - 100)
+        friction += .01 * (kFriction * outputs.wheel_q[0] + kRight * outputs.wheel_q[1]);
+    }
+    CHECK(met == Status::full_slip);
+    const Simulation again(braked(1.2 * limit, kind, kRight));
+    CHECK(balance_of(*again.packed(), again.model(), model.steps).error < 1e-5);
+    const double slowed = (before - spin) / (100. * model.scheme.dt);
+    CHECK(slowed * runner.wheelset[0].spin_inertia ==
+          Approx(1.2 * limit - friction * kRadius).epsilon(1e-2));
+  }
+}

@@ -191,6 +191,28 @@ HardResult stiffness_jump(const std::filesystem::path& scene) {
   return result;
 }
 
+// H51 ------------------------------------------------------------------------------------------
+
+HardResult full_slip(const std::filesystem::path& scene) {
+  const char* const force = "car.drive_n";
+  HardResult result;
+  result.picture = {"time, s", "force of the drive, kN", {}};
+  for (const char* law : {"she", "fastsim", "polach"}) {
+    const std::string by = std::string("contact.creep=\"") + law + "\"";
+    const HardRun run(scene, {by}), fine(scene, {by, "step.dt_s=5e-4", "step.frame_s=1e-3"});
+    const std::string at = law + std::string(": ");
+    const std::vector<double> held = run.column(force);
+    result.checks.push_back(
+        holds(at + "full slip is the one status bit", run.status() == "full_slip"));
+    result.checks.push_back({at + "force of the drive at half the step, over the largest",
+                             largest_gap(held, fine.column(force)) / largest_size(held), 5e-3});
+    check_energy(result, run, at, 1e-4, 1e-4);
+    result.picture.curves.push_back(run.curve(force, law, 1e-3));
+    result.frame_us = run.frame_us();
+  }
+  return result;
+}
+
 }  // namespace
 
 std::vector<HardCase> traffic_cases() {
@@ -207,7 +229,10 @@ std::vector<HardCase> traffic_cases() {
            "Stiffness jumps up and down again under a wheel at 60 m/s.",
            "Energy, and the same at ever shorter steps: of first order, as a wheel meets the kinks "
            "between elements within a step, on even seats too.",
-           stiffness_jump}};
+           stiffness_jump},
+          {"H51", "h51_full_slip", "A wheelset is braked beyond friction, and let go",
+           "Creep leaves the range in which it depends on slip, and comes back into it.",
+           "Energy, half the step.", full_slip}};
 }
 
 }  // namespace railstep

@@ -1,6 +1,8 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 
 #include "offline/contact/hertz.h"
 #include "offline/runner/suspension.h"
@@ -8,6 +10,40 @@
 
 namespace railstep {
 namespace {
+
+/// The law of creep. Without coefficients the patch is that of Hertz.
+RollingCreep read_creep(const Table& t, const RollingContact& c, double radius,
+                        const BarScene& steel) {
+  RollingCreep creep{CreepLaw::linear, 0, 0, {1., 1.}, 1., 1., 1., {}};
+  constexpr double kLoad = 1e5;  // N: the ellipse has the same shape under every load
+  const std::size_t law = t.choice("creep", {"none", "linear", "she", "fastsim", "polach"});
+  if (law == 0) return creep;
+  creep.law = CreepLaw{static_cast<std::int32_t>(law - 1)};
+  if (creep.law != CreepLaw::linear) {
+    const std::array<double, 2> friction = t.number_or_pair("friction", between(1e-3, 2.0));
+    std::copy(friction.begin(), friction.end(), creep.friction);
+  }
+  if (creep.law == CreepLaw::fastsim)
+    creep.strips = static_cast<std::int32_t>(t.integer("strips", 1, kMostStrips, 10));
+  if (t.has("kalker")) {
+    if (creep.law == CreepLaw::fastsim || creep.law == CreepLaw::polach)
+      t.refuse("kalker", "E-CONTACT-07",
+               "this law of creep needs the patch, not its coefficients; expected no kalker, or "
+               "creep = \"linear\" or \"she\"");
+    const std::vector<double> f = t.numbers("kalker", between(0.0, 1e12), 4, 4);
+    creep.kalker = {f[0], f[1], f[2], f[3]};
+    return creep;
+  }
+  const HertzContact patch =
+      hertz_contact(radius, c.crown_radius, steel.young, steel.poisson, kLoad);
+  const double root = std::sqrt(std::pow(kLoad / c.hertz, 2. / 3.));
+  creep.grows = 1;
+  creep.half_length = patch.half_along / root;
+  creep.half_width = patch.half_across / root;
+  creep.shear = steel.young / (2. * (1. + steel.poisson));
+  creep.kalker = kalker(patch.half_along / patch.half_across, steel.poisson);
+  return creep;
+}
 
 /// [contact]: wheels that are cones on crowns that are circles.
 RollingContact read_rolling(const Table& root, const Scene& scene, double radius) {
@@ -22,9 +58,7 @@ RollingContact read_rolling(const Table& root, const Scene& scene, double radius
   c.hertz = t.has("hertz_n_per_m15")
                 ? t.number("hertz_n_per_m15", between(1e6, 1e14))
                 : hertz_constant(radius, c.crown_radius, scene.rail.young, scene.rail.poisson);
-  if (t.choice("creep", {"none", "linear"}) == 0) return c;
-  const std::vector<double> f = t.numbers("kalker", between(0.0, 1e12), 4, 4);
-  std::copy(f.begin(), f.end(), c.kalker);
+  c.creep = read_creep(t, c, radius, scene.rail);
   return c;
 }
 

@@ -10,8 +10,18 @@ namespace {
 // One wheel on its rail: forces alone, and with their slopes.
 constexpr Cost kWheel = branching(600, 250), kWheelSlopes = branching(2600, 2600);
 
+/// One evaluation of a law of creep with its slopes, beyond linear creep.
+Cost creep_cost(const RollingCreep& creep) {
+  const std::int64_t strips = creep.strips;
+  if (creep.law == CreepLaw::linear) return {};
+  return creep.law == CreepLaw::fastsim
+             ? branching(150 * strips * strips + 60 * strips + 700, 40 * strips * strips + 400)
+             : branching(800, 400);
+}
+
 /// All wheels and scalar laws at the caps of Newton's iterations, and the matrices of these.
-Cost newton_cost(std::int64_t wheels, std::int64_t scalars, std::int64_t n) {
+/// @param creep  of all wheels, evaluated once
+Cost newton_cost(std::int64_t wheels, const Cost& creep, std::int64_t scalars, std::int64_t n) {
   constexpr std::int64_t trials = 3;  // of a step's parts
   const std::int64_t ranks = scalars + kWheelsetRank * wheels / 2;
   const Cost missed = work(2 * n * n + 8 * n, n * n + 6 * n);
@@ -26,7 +36,7 @@ Cost newton_cost(std::int64_t wheels, std::int64_t scalars, std::int64_t n) {
       work(2 * kMostLaw * ranks + solves * (2 * ranks * ranks + 6 * ranks) + 2 * n * ranks + 8 * n,
            2 * kMostLaw * ranks + solves * (2 * ranks * ranks + 6 * ranks) + 2 * n * ranks);
   const Cost scalar = branching(40, 20);
-  return (trials + 1) * kNewtonSweeps * (scalars * scalar) +
+  return (trials + 1) * kNewtonSweeps * (scalars * scalar + creep) + creep +
          kNewtonSweeps * (trials * (wheels * kWheel + missed) + wheels * kWheelSlopes + missed +
                           factor + step) +
          wheels * kWheel + work(6 * n, 3 * n * n);
@@ -40,7 +50,10 @@ Cost runners_cost(const Model& model) {
     const RunnerModel& own = model.runner[i];
     const std::int64_t n = own.size, meets = interface_size(own);
     const Cost solved =
-        model.lines > 0 ? Cost{} : newton_cost(2LL * own.wheelsets, own.stops, meets);
+        model.lines > 0
+            ? Cost{}
+            : newton_cost(2LL * own.wheelsets, 2LL * own.wheelsets * creep_cost(own.contact.creep),
+                          own.stops, meets);
     const std::int64_t products = model.form == Form::condensed ? 3 : 2;
     const std::int64_t motions = kMotions * std::int64_t{own.wheelsets},
                        held = constraint_count(own);
@@ -58,12 +71,14 @@ Cost coupled_runners_cost(const Model& model) {
   const std::int64_t n = newton_size(model),
                      scalars = contact_count(model) + model.fixed.count + model.runner_stops;
   if (model.lines == 0 || n == 0) return {};
-  Cost seats{};
+  Cost seats{}, creep{};
+  for (std::int32_t i = 0; i < model.runners; ++i)
+    creep = creep + 2LL * model.runner[i].wheelsets * creep_cost(model.runner[i].contact.creep);
   for (std::int32_t l = 0; l < model.lines; ++l) {
     const LineCost cost = line_cost(model, model.line[l]);
     seats = seats + 3 * cost.wheel_row + kPDeltaSeats * cost.node_roll;
   }
-  return newton_cost(2LL * model.runner_wheelsets, scalars, n) + work(0, 4 * n * n) +
+  return newton_cost(2LL * model.runner_wheelsets, creep, scalars, n) + work(0, 4 * n * n) +
          wheel_seat_row_count(model) * (work(300, 150) + seats + port_count(model) * kPairLookUp) +
          wheel_seat_row_count(model) / kWheelSeatRows * 2 * (2 * kLookUp + work(60, 80));
 }

@@ -137,6 +137,22 @@ RailRate rail_rate(const double* seat) {
   return {seat[kWheelSeatRows], seat[kWheelSeatRows + 1], seat[kWheelSeatRows + 2]};
 }
 
+/// Adds the work of moments about the axles on the part of the spins that goes with the speed.
+void add_spin_work(const Model& model, const RunnerModel& r, const StandingRunner& before,
+                   const State& from, const StandingRunner& after, const State& to,
+                   RunnerWork& work) {
+  const Eigen::VectorXd f0 = outer_forces(model, r, from), f1 = outer_forces(model, r, to),
+                        held = outer_forces(model, r, to, .5);
+  for (int i = 0; i < r.wheelsets; ++i) {
+    const std::int32_t spin = r.wheelset[i].first + index_of(BodyMotion::pitch);
+    const double turn = model.scheme.dt / r.wheelset[i].radius;
+    const double mean = .5 * turn * (f0[spin] * before.speed + f1[spin] * after.speed);
+    work.forces += mean;
+    if (model.form == Form::condensed)
+      work.loss += mean - turn * held[spin] * .5 * (before.speed + after.speed);
+  }
+}
+
 }  // namespace
 
 StandingRunner standing_runner(const Model& model, const RunnerModel& runner, const State& at) {
@@ -200,6 +216,7 @@ RunnerWork runner_work(const Model& model, const RunnerModel& runner, const Stan
   work.loss += .5 * (stop_forces(runner, u0) + stop_forces(runner, u1)).dot(du) +
                (stop_energy(runner, u1) - stop_energy(runner, u0));
   work.drive -= contact.on_seats - contact.on_lines - residual;
+  add_spin_work(model, runner, before, from, after, to, work);
   // The frames accelerate.
   const double faster = (after.speed - before.speed) / dt;
   for (std::int32_t b = 0; b < runner.bodies; ++b)

@@ -15,16 +15,15 @@ struct BodiesMaps {
         stiffness(b.stiffness, b.size, b.size) {}
 };
 
-/// Forces of tables and inputs, along the coordinates. @param before  steps before the state's
-Eigen::VectorXd forces_on(const Model& model, const SuspendedModel& bodies, const State& at,
-                          double before = 0.) {
+}  // namespace
+
+Eigen::VectorXd outer_forces(const Model& model, const SuspendedModel& bodies, const State& at,
+                             double before) {
   Eigen::VectorXd sum = Eigen::VectorXd::Zero(bodies.size);
   const double time = (static_cast<double>(at.steps) - before) * model.scheme.dt;
   add_forces(bodies, time, at.input, sum.data());
   return sum;
 }
-
-}  // namespace
 
 SuspendedEnergy suspended_energy(const SuspendedModel& bodies, const State& at) {
   const BodiesMaps m(bodies);
@@ -38,11 +37,12 @@ SuspendedWork suspended_work(const Model& model, const SuspendedModel& bodies, c
   const double dt = model.scheme.dt;
   const BodiesVector v0 = part_of(bodies, before.v), v1 = part_of(bodies, after.v);
   const Eigen::VectorXd du = part_of(bodies, after.u) - part_of(bodies, before.u), dv = v1 - v0;
-  const Eigen::VectorXd f0 = forces_on(model, bodies, before), f1 = forces_on(model, bodies, after);
+  const Eigen::VectorXd f0 = outer_forces(model, bodies, before),
+                        f1 = outer_forces(model, bodies, after);
   SuspendedWork work{m.rest.dot(du), .5 * (f0 + f1).dot(du), 0., 0.};
   if (model.form == Form::condensed) {
     work.dissipated = du.dot(m.damping * du) / dt;
-    work.loss = (.5 * (f0 + f1) - forces_on(model, bodies, after, .5)).dot(du);
+    work.loss = (.5 * (f0 + f1) - outer_forces(model, bodies, after, .5)).dot(du);
     return work;
   }
   const Eigen::VectorXd v = .5 * (v0 + v1);
@@ -57,9 +57,10 @@ SuspendedWork suspended_work(const Model& model, const SuspendedModel& bodies, c
 double suspended_unbalanced(const Model& model, const SuspendedModel& bodies,
                             const Eigen::VectorXd& force, const State& at, const State& after) {
   const BodiesMaps m(bodies);
-  const Eigen::VectorXd left =
-      force + forces_on(model, bodies, at) + m.rest - m.mass.cwiseProduct(part_of(bodies, at.g)) -
-      m.damping * part_of(bodies, at.v) - m.stiffness * part_of(bodies, at.u);
+  const Eigen::VectorXd left = force + outer_forces(model, bodies, at) + m.rest -
+                               m.mass.cwiseProduct(part_of(bodies, at.g)) -
+                               m.damping * part_of(bodies, at.v) -
+                               m.stiffness * part_of(bodies, at.u);
   return left.dot(part_of(bodies, after.u) - part_of(bodies, at.u));
 }
 

@@ -18,6 +18,11 @@ struct SuspendedEnergy {
 };
 SuspendedEnergy suspended_energy(const SuspendedModel& bodies, const State& at);
 
+/// Forces of tables and inputs along the coordinates, N and N m. @param before  steps before the
+/// state's
+Eigen::VectorXd outer_forces(const Model& model, const SuspendedModel& bodies, const State& at,
+                             double before = 0.);
+
 /// Flows of energy in a step between two states, J. If the equation of motion holds at the step's
 /// end, dampers dissipate the trapezoidal mean of v' C v, and the loss is LineEnergy::loss with the
 /// bodies' matrices. If forces are held over the step, dampers dissipate du' C du / dt exactly; the

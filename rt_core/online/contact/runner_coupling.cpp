@@ -304,7 +304,7 @@ Status move_coupled_runners(const Model& model, const Coupling& c, const Coupled
         force[kMotions * i + k] = all.force[all.scalars + kOfWheelset * set + k];
       keep_wheel_forces(runner, i, all.law[set], s);
       if (keeps_seats(model)) keep_seats(c, all, set, s, wheel_seat_row(model, set, 0));
-      if (all.law[set].lost) met = met | Status::contact_lost;
+      met = met | events_of(all.law[set]);
       if (!is_on_rail(c, wheel_seat_row(model, set, 0))) met = met | Status::off_rail;
     }
     for (int j = 0; j < runner.stops; ++j)

@@ -45,7 +45,7 @@ NewtonResult solve_coupled_runners(const Model& model, const Workspace& w, Coupl
                                    CoupledRunners& runners) noexcept;
 
 /// Moves the runners by their forces, and stores these.
-/// @returns contact_lost where a wheel is free, off_rail where one is beyond the rail's ends
+/// @returns events_of() all wheelsets, off_rail where one is beyond the rail's ends
 Status move_coupled_runners(const Model& model, const Coupling& c, const CoupledRunners& runners,
                             State& s, Workspace& w) noexcept;
 

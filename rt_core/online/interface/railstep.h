@@ -56,7 +56,9 @@ enum {
   RAILSTEP_LARGE_TURN = 64,         /* a rail rolled so far that its linear form is off */
   RAILSTEP_NONFINITE_INPUT = 128,   /* an input was not finite: its last good value was held */
   RAILSTEP_FORCE_SATURATED = 256,   /* an input was beyond its limit, and cut to it */
-  RAILSTEP_CONTACT_ILL_POSED = 512 /* compliances of contacts that are not positive or not finite */
+  RAILSTEP_CONTACT_ILL_POSED =
+      512,                  /* compliances of contacts that are not positive or not finite */
+  RAILSTEP_FULL_SLIP = 1024 /* the whole contact patch of a wheel slid */
 };
 
 /* RAILSTEP_VERSION of the library. */

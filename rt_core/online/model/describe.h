@@ -213,7 +213,16 @@ void describe(Archive& a, ContactModel& c, const Model& m) {
 template <typename Archive>
 void describe(Archive& a, RollingContact& c) {
   for (double* x : {&c.slope, &c.half_distance, &c.crown_radius, &c.hertz}) a.real(*x);
-  for (double& x : c.kalker) a.real(x);
+  RollingCreep& creep = c.creep;
+  auto law = static_cast<std::int32_t>(creep.law);
+  a.count(law, static_cast<std::int32_t>(CreepLaw::polach));
+  creep.law = static_cast<CreepLaw>(law);
+  a.count(creep.strips, kMostStrips);
+  a.count(creep.grows, 1);
+  for (double* x :
+       {&creep.friction[0], &creep.friction[1], &creep.half_length, &creep.half_width, &creep.shear,
+        &creep.kalker.c11, &creep.kalker.c22, &creep.kalker.c23, &creep.kalker.c33})
+    a.real(*x);
 }
 
 template <typename Archive>

@@ -137,9 +137,15 @@ bool vehicle_is_valid(const Model& m, const SuspendedModel& v) noexcept {
          diagonal_is_above_zero(v.inverse, v.size);
 }
 
+bool creep_is_valid(const RollingCreep& c) noexcept {
+  const double coefficients[] = {c.kalker.c11, c.kalker.c22, c.kalker.c23, c.kalker.c33};
+  return are_not_negative(coefficients, 4) && are_above_zero(c.friction, 2) && c.half_length > 0. &&
+         c.half_width > 0. && c.shear > 0. && (c.law != CreepLaw::fastsim || c.strips > 0);
+}
+
 bool contact_is_valid(const RollingContact& c) noexcept {
   return c.hertz > 0. && c.crown_radius > 0. && c.half_distance > 0. && c.slope >= 0. &&
-         are_not_negative(c.kalker, 4);
+         creep_is_valid(c.creep);
 }
 
 bool stops_are_valid(const RunnerModel& r, std::int32_t first_stop) noexcept {

@@ -2,6 +2,8 @@
 #include <cstdint>
 
 #include "online/model/suspended_model.h"
+#include "online/patch/creep_law.h"
+#include "online/patch/kalker.h"
 
 namespace railstep {
 
@@ -12,17 +14,27 @@ enum class BodyMotion { x, y, z, roll, pitch, yaw };
 inline constexpr int kMotions = 6;
 constexpr int index_of(BodyMotion motion) noexcept { return static_cast<int>(motion); }
 
-/// Conical treads on the circular crowns of rigid, straight rails: Hertz's law along the normal and
-/// linear creep with constant coefficients,
-///   Tx = -f11 xi_x,  Ty = -f22 xi_y - f23 xi_s,  moment = f23 xi_y - f33 xi_s,
-/// xi the creepages and spin over the speed; Kalker, Three-Dimensional Elastic Bodies in Rolling
-/// Contact, 1990.
+/// Creep of wheels on rails: a law, and the patch under a wheel. By Hertz's law a patch grows as
+/// the root of the penetration; coefficients of creep that are given instead hold for every force,
+/// as if the patch kept its size.
+struct RollingCreep {
+  CreepLaw law;
+  std::int32_t strips;             // of FASTSIM
+  std::int32_t grows;              // 1: the patch grows with the force, 0: it keeps its size
+  double friction[2];              // coefficients of the left and of the right rail
+  double half_length, half_width;  // along the rail and across, m; if it grows, m^0.5 of root depth
+  double shear;                    // modulus, N/m2
+  Kalker kalker;
+};
+
+/// Conical treads on the circular crowns of straight rails: Hertz's law along the normal, and a law
+/// of creep.
 struct RollingContact {
   double slope;          // of the treads, tangent of the cone's half angle
   double half_distance;  // between the contacts of a centred wheelset, m
   double crown_radius;   // m
   double hertz;          // N/m^1.5
-  double kalker[4];      // f11 N, f22 N, f23 N m, f33 N m2
+  RollingCreep creep;
 };
 
 /// A bump stop: a spring beyond a gap against and along its axis.

@@ -16,6 +16,7 @@ enum class Status : std::uint32_t {
   nonfinite_input = 1u << 7,     // an input was not finite: its last good value was held
   force_saturated = 1u << 8,     // an input was beyond its limit, and cut to it
   contact_ill_posed = 1u << 9,   // compliances of contacts that are impossible
+  full_slip = 1u << 10,          // the whole contact patch of a wheel slid
 };
 
 constexpr Status operator|(Status a, Status b) noexcept {
@@ -57,6 +58,9 @@ inline constexpr StatusText kStatusTexts[] = {
     {Status::contact_ill_posed, "contact_ill_posed",
      "the compliance between contacts is not positive or not finite, and their forces are not "
      "right: set condense.residual_flexibility = false"},
+    {Status::full_slip, "full_slip",
+     "the whole contact patch of a wheel slid: its creep force was that of friction, and creepages "
+     "do not change its size"},
     {Status::nonfinite_state, "nonfinite_state", "the state is no longer finite"},
 };
 

@@ -1,14 +1,8 @@
 #pragma once
-#include <cstdint>
-
+#include "online/patch/creep_law.h"
 #include "online/patch/creep_laws.h"
 
 namespace railstep {
-
-enum class CreepLaw : std::int32_t { linear, she, fastsim, polach };
-
-/// Largest number of FASTSIM's strips.
-inline constexpr int kMostStrips = 100;
 
 /// A creep force on the wheel and its derivatives.
 struct CreepForce {

@@ -4,10 +4,6 @@ namespace railstep {
 
 namespace {
 
-ContactForces<double> values(const ContactForces<Placed>& f) noexcept {
-  return {f.normal.value, f.along.value, f.across.value, f.moment.value};
-}
-
 WheelRows<double> values(const WheelRows<Placed>& r) noexcept {
   return {r.depth.value,       r.n_y.value,         r.n_z.value,        r.normal_roll.value,
           r.normal_yaw.value,  r.along_roll.value,  r.along_spin.value, r.along_yaw.value,
@@ -15,28 +11,35 @@ WheelRows<double> values(const WheelRows<Placed>& r) noexcept {
           r.spin_spin.value};
 }
 
-void find_slopes(const RollingContact& c, const WheelRows<double>& r,
-                 const ContactForces<Placed>& f, double per_speed, ContactSlopes& slopes) noexcept {
-  const double normal[6] = {0., r.n_y, r.n_z, r.normal_roll, 0., r.normal_yaw};
+/// Derivatives of a creep force over kPlaced.
+double by_motion(const Slip<Placed>& slip, const Placed& normal, const double* by_slip,
+                 double by_normal, int m) noexcept {
+  return (by_slip[0] * slip.along.slope[m] + by_slip[1] * slip.across.slope[m]) +
+         (by_slip[2] * slip.spin.slope[m] + by_normal * normal.slope[m]);
+}
+
+void find_slopes(const WheelRows<double>& r, const Slip<Placed>& slip, const Placed& normal,
+                 const ContactCreep& creep, ContactSlopes& slopes) noexcept {
+  const double pressed[6] = {0., r.n_y, r.n_z, r.normal_roll, 0., r.normal_yaw};
   const double along[6] = {1., 0., 0., r.along_roll, r.along_spin, r.along_yaw};
   const double across[6] = {0., r.n_z, -r.n_y, r.across_roll, r.across_spin, r.across_yaw};
   const double spin[6] = {0., 0., 0., r.spin_roll, r.spin_spin, r.n_z};
-  const double f11 = c.kalker[0] * per_speed, f22 = c.kalker[1] * per_speed,
-               f23 = c.kalker[2] * per_speed;
+  const double *const x = creep.by_slip[0], *const y = creep.by_slip[1];
   for (int k = 0; k < 6; ++k) {
     slopes.by_rate[0][k] = 0.;
-    slopes.by_rate[1][k] = -f11 * along[k];
-    slopes.by_rate[2][k] = -f22 * across[k] - f23 * spin[k];
-    slopes.spread[k][0] = normal[k];
+    slopes.by_rate[1][k] = (x[0] * along[k] + x[1] * across[k]) + x[2] * spin[k];
+    slopes.by_rate[2][k] = (y[0] * along[k] + y[1] * across[k]) + y[2] * spin[k];
+    slopes.spread[k][0] = pressed[k];
     slopes.spread[k][1] = along[k];
     slopes.spread[k][2] = across[k];
   }
-  slopes.by_across[0] = slopes.by_across[1] = 0.;
-  slopes.by_across[2] = -f22;
+  slopes.by_across[0] = 0.;
+  slopes.by_across[1] = x[1];
+  slopes.by_across[2] = y[1];
   for (int m = 0; m < 4; ++m) {
-    slopes.by_motion[0][m] = f.normal.slope[m];
-    slopes.by_motion[1][m] = f.along.slope[m];
-    slopes.by_motion[2][m] = f.across.slope[m];
+    slopes.by_motion[0][m] = normal.slope[m];
+    slopes.by_motion[1][m] = by_motion(slip, normal, x, creep.by_normal[0], m);
+    slopes.by_motion[2][m] = by_motion(slip, normal, y, creep.by_normal[1], m);
   }
 }
 
@@ -49,22 +52,17 @@ WheelForce wheel_force(const RollingContact& c, double radius, double side, doub
       wheel_rows(c, radius, side, Placed::along(0, u[1]), Placed::along(1, u[2]),
                  Placed::along(2, u[3]), Placed::along(3, u[5]));
   const WheelRows<double> r = values(placed);
-  WheelForce force{r.depth, 0., 0., {}, 0.};
   if (!(r.depth > 0.)) {
     slopes = {};
-    return force;
+    return {r.depth, 0., 0., {}, 0., false};
   }
-  const double per_speed = per_rolling(speed);
   const Slip<Placed> slip = slip_of(c, placed, v, speed, radius, rail);
-  const ContactForces<Placed> slopes_of = contact_forces(c, placed.depth, slip, per_speed);
-  const ContactForces<double> f = values(slopes_of);
-  force.normal = f.normal;
-  force.across = f.across;
-  force.creep_power =
-      f.along * slip.along.value + f.across * slip.across.value + f.moment * slip.spin.value;
-  generalise(r, f, force.generalised);
-  find_slopes(c, r, slopes_of, per_speed, slopes);
-  return force;
+  const Slip<double> slips{slip.along.value, slip.across.value, slip.spin.value};
+  const Placed normal = normal_force(c, placed.depth);
+  const ContactCreep creep =
+      contact_creep(c.creep, rail_of(side), r.depth, normal.value, slips, per_rolling(speed));
+  find_slopes(r, slip, normal, creep, slopes);
+  return wheel_force(r, normal.value, slips, creep);
 }
 
 }  // namespace railstep

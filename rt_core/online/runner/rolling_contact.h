@@ -3,7 +3,7 @@
 
 #include "online/math/dual.h"
 #include "online/math/sine.h"
-#include "online/model/runner_model.h"
+#include "online/runner/rolling_creep.h"
 
 namespace railstep {
 
@@ -155,12 +155,7 @@ struct RailRate {
   double y, z, roll;
 };
 
-/// Slip of the wheel over the rail at a contact, m/s, and spin, rad/s.
-template <typename T>
-struct Slip {
-  T along, across, spin;
-};
-/// @param v      [6] rates of the wheelset's motions
+/// Slip of a contact. @param v      [6] rates of the wheelset's motions
 /// @param speed  of the wheelset's frame, m/s
 template <typename T>
 Slip<T> slip_of(const RollingContact& c, const WheelRows<T>& r, const double* v, double speed,
@@ -179,20 +174,15 @@ inline double per_rolling(double speed) noexcept {
   return 1. / (size > kLeastRolling ? size : kLeastRolling);
 }
 
-/// Forces at a contact in touch. @param per_speed  per_rolling()
+/// Normal force of a contact in touch, N.
 template <typename T>
-ContactForces<T> contact_forces(const RollingContact& c, const T& depth, const Slip<T>& slip,
-                                double per_speed) noexcept {
+T normal_force(const RollingContact& c, const T& depth) noexcept {
   using std::sqrt;
-  const double f11 = c.kalker[0] * per_speed, f22 = c.kalker[1] * per_speed,
-               f23 = c.kalker[2] * per_speed, f33 = c.kalker[3] * per_speed;
-  ContactForces<T> f;
-  f.normal = c.hertz * depth * sqrt(depth);
-  f.along = -f11 * slip.along;
-  f.across = -f22 * slip.across - f23 * slip.spin;
-  f.moment = f23 * slip.across - f33 * slip.spin;
-  return f;
+  return c.hertz * depth * sqrt(depth);
 }
+
+/// Index of a rail by its side.
+inline int rail_of(double side) noexcept { return side > 0. ? 0 : 1; }
 
 /// Over the six motions of the wheelset, N and N m.
 template <typename T>
@@ -218,6 +208,7 @@ struct WheelForce {
   double normal, across;  // N; across: of creep
   double generalised[6];  // over the wheelset's motions, N and N m; the first three are x, y, z
   double creep_power;     // W, not above 0
+  bool slides;            // ContactCreep::slides
 };
 
 /// Derivatives of the normal force and of the creep forces along and across, over kPlaced, over the
@@ -227,21 +218,28 @@ struct ContactSlopes {
   double spread[6][3];  // forces on the motions by a unit of each of the three
 };
 
+/// Of a contact in touch whose creep is known.
+inline WheelForce wheel_force(const WheelRows<double>& r, double normal, const Slip<double>& slip,
+                              const ContactCreep& creep) noexcept {
+  const double* const f = creep.force;
+  WheelForce force{r.depth, normal, f[1], {}, 0., creep.slides};
+  force.creep_power = f[0] * slip.along + f[1] * slip.across + f[2] * slip.spin;
+  generalise(r, ContactForces<double>{normal, f[0], f[1], f[2]}, force.generalised);
+  return force;
+}
+
 /// @param side  1 of the left wheel, -1 of the right
 /// @param u, v  [6] motions of the wheelset over the rail, and their rates
 /// @param rail  rates of the rail
 inline WheelForce wheel_force(const RollingContact& c, double radius, double side, double speed,
                               const double* u, const double* v, const RailRate& rail) noexcept {
   const WheelRows<double> r = wheel_rows(c, radius, side, u[1], u[2], u[3], u[5]);
-  WheelForce force{r.depth, 0., 0., {}, 0.};
-  if (!(r.depth > 0.)) return force;
+  if (!(r.depth > 0.)) return {r.depth, 0., 0., {}, 0., false};
   const Slip<double> slip = slip_of(c, r, v, speed, radius, rail);
-  const ContactForces<double> f = contact_forces(c, r.depth, slip, per_rolling(speed));
-  force.normal = f.normal;
-  force.across = f.across;
-  force.creep_power = f.along * slip.along + f.across * slip.across + f.moment * slip.spin;
-  generalise(r, f, force.generalised);
-  return force;
+  const double normal = normal_force(c, r.depth);
+  return wheel_force(
+      r, normal, slip,
+      contact_creep(c.creep, rail_of(side), r.depth, normal, slip, per_rolling(speed)));
 }
 
 /// The same with derivatives.

@@ -152,7 +152,7 @@ void WheelsetLaw::evaluate(const double* z, double* force, const LawSlopes* slop
     u[k] = is_earlier(BodyMotion{k}) ? z[k] - later * v[k] : z[k];
     force[k] = 0.;
   }
-  lost = false;
+  lost = slides = false;
   for (int side = 0; side < 2; ++side) {
     const int seat = kMotions + 3 * side;
     RailsUnder under = rails;
@@ -168,7 +168,8 @@ void WheelsetLaw::evaluate(const double* z, double* force, const LawSlopes* slop
     ContactSlopes own;
     const WheelForce f = wheel_force(*runner, wheelset, under, moving, side, speed, u, v,
                                      slopes == nullptr ? nullptr : &own);
-    if (!(f.depth > 0.)) lost = true;
+    lost = lost || !(f.depth > 0.);
+    slides = slides || f.slides;
     for (int k = 0; k < kMotions; ++k) force[k] += f.generalised[k];
     keep_wheel_force(f, crown, kept[side]);
     steep[3 * side] = f.depth > 0. ? std::sqrt(f.depth) : 0.;
@@ -200,6 +201,11 @@ WheelsetLaw law_of(const RunnerStage& at, int wheelset, bool seated) noexcept {
     law.uneven_rate[side] = law.speed * slope.z[side];
   }
   return law;
+}
+
+Status events_of(const WheelsetLaw& law) noexcept {
+  return (law.lost ? Status::contact_lost : Status::ok) |
+         (law.slides ? Status::full_slip : Status::ok);
 }
 
 Status status_of(NewtonStatus met) noexcept {
@@ -253,7 +259,7 @@ RunnerResult solve_runner(const RunnerStage& at, State& s, Workspace& w) noexcep
   move_by(r, force, u, reactions_of(at.model, s, r));
   RunnerResult result{status_of(met.status), met.iterations};
   for (int i = 0; i < r.wheelsets; ++i) {
-    if (law[i].lost) result.status = result.status | Status::contact_lost;
+    result.status = result.status | events_of(law[i]);
     keep_wheel_forces(r, i, law[i], s);
   }
   return result;

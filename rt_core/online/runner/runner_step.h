@@ -72,6 +72,7 @@ struct WheelsetLaw {
   double rate_at_zero[kMotions + 6];
   double kept[2][kWheelForces];  // State::wheel_force of the last evaluation
   bool lost;                     // a wheel was free there
+  bool slides;                   // the whole patch of a wheel did
 
   int size() const noexcept { return seated ? kMotions + 6 : kMotions; }
   /// @param slopes  out: of the normal and creep forces of both wheels, which are kWheelsetRank
@@ -99,5 +100,7 @@ struct RunnerResult {
 RunnerResult solve_runners(const Model& model, const Stage& stage, State& s, Workspace& w) noexcept;
 
 Status status_of(NewtonStatus met) noexcept;
+/// Events of the last evaluation: contact_lost, full_slip.
+Status events_of(const WheelsetLaw& law) noexcept;
 
 }  // namespace railstep

@@ -1,0 +1,64 @@
+#pragma once
+#include <cstdint>
+
+#include "online/patch/strip_patch.h"
+
+namespace railstep {
+
+/// A profile as a table over equally spaced places: values and first derivatives, between which it
+/// is cubic.
+struct ProfileTable {
+  std::int32_t points;  // at least 2
+  double first, step;   // m
+  const double* value;  // [points][2] m, and the derivative times step, m
+};
+
+/// A wheel and its rail, both seen as the right ones: y outwards, z up.
+struct WheelOnRail {
+  ProfileTable wheel;    // growth of the radius over s, outwards from the tread datum
+  ProfileTable rail;     // height over y outwards from the middle of the track
+  double half_distance;  // from the wheelset's middle to the tread datum, m
+  double radius;         // at the tread datum, m
+  double modulus;        // E / (1 - nu^2) of two like bodies, N/m2
+};
+
+/// Where a wheelset is over a rail, both in the frame of the rail's profile.
+struct WheelsetPlace {
+  double outwards, up;  // of its middle, m
+  double roll;          // rad, positive where it lifts this wheel; less the roll of the rail
+  double yaw;           // rad, positive where it moves this wheel back
+};
+
+inline constexpr int kSearchStrips = 128;  // between which a wheel is looked at
+inline constexpr int kZoneStrips = 33;     // of one zone
+inline constexpr int kMostZones = 3;       // of a wheel: tread, throat and flange
+
+/// Where a wheel and its rail overlap, or are next to do so.
+struct WheelZone {
+  double depth;            // at the deepest point, along the normal, m; negative: free
+  double slope;            // of the contact plane in the rail's frame, dz/dy
+  double ahead;            // of the contact before the wheelset's middle, m
+  double y, z;             // of the deepest point in the rail's frame, m
+  double s;                // of the deepest point on the wheel, m
+  double cosine_of_wheel;  // of the angle between the wheel's profile and its axle
+  bool at_edge;            // the overlap reaches the end of a profile
+  double gap[kZoneStrips];
+  StripPatch patch;  // without its gaps; see patch_of()
+};
+inline StripPatch patch_of(const WheelZone& zone) noexcept {
+  StripPatch patch = zone.patch;
+  patch.gap = zone.gap;
+  return patch;
+}
+
+/// Finds the zones of a wheel, at most kMostZones, the deepest ones, in the order of s. A yawed
+/// wheel touches along the line that is lowest on each of its circles, to second order in the yaw:
+/// before the axle by -r F' yaw, F' the slope of the wheel's growth. Minima of the gap are one zone
+/// where the deeper one's overlap, by the law of patches, goes beyond the ridge between them.
+/// @param least_depth  m: zones of less depth are looked at as if they were that deep
+/// @param zone  [kMostZones] out
+/// @returns how many zones there are: one at least where the wheel is above its rail, 0 beside it
+int find_zones(const WheelOnRail& pair, const WheelsetPlace& at, double least_depth,
+               WheelZone* zone) noexcept;
+
+}  // namespace railstep

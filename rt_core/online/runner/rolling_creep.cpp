@@ -1,0 +1,106 @@
+#include "online/runner/rolling_creep.h"
+
+#include "online/math/scalar.h"
+#include "online/patch/creep.h"
+
+namespace railstep {
+
+namespace {
+
+constexpr double kLeastNormal = 1e-6;   // N
+constexpr double kLeastSquare = 1e-20;  // of linear creep over the limit: it has a direction beyond
+constexpr double kSlides = 3.;          // linear creep over the limit; Shen, Hedrick and Elkins
+
+/// Linear creep: forces along and across and the moment over creepages, N, N m and N m2.
+struct LinearCreep {
+  double by[3][3];
+};
+
+LinearCreep linear_creep(const CreepPatch& p) noexcept {
+  const double area = p.half_length * p.half_width, root = square_root(area);
+  const double force = p.shear * area, spin = force * root * p.kalker.c23;
+  return {{{-force * p.kalker.c11, 0., 0.},
+           {0., -force * p.kalker.c22, -spin},
+           {0., spin, -force * area * p.kalker.c33}}};
+}
+
+double sum_of(const double* row, const double* x) noexcept {
+  return (row[0] * x[0] + row[1] * x[1]) + row[2] * x[2];
+}
+
+void take_linear(const LinearCreep& linear, const double* creepage, ContactCreep& found) noexcept {
+  for (int i = 0; i < 3; ++i) {
+    found.force[i] = sum_of(linear.by[i], creepage);
+    for (int k = 0; k < 3; ++k) found.by_slip[i][k] = linear.by[i][k];
+  }
+}
+
+/// Forces by a law, and the linear moment less by the same factor as they are.
+void saturate(const RollingCreep& c, const CreepPatch& patch, const LinearCreep& linear,
+              const double* creepage, ContactCreep& found) noexcept {
+  const CreepForce force =
+      creep_force(c.law, c.strips, patch, {creepage[0], creepage[1], creepage[2]});
+  const double x = sum_of(linear.by[0], creepage), y = sum_of(linear.by[1], creepage),
+               moment = sum_of(linear.by[2], creepage);
+  const double linear2 = x * x + y * y, force2 = force.x * force.x + force.y * force.y;
+  const double limit2 = patch.limit * patch.limit;
+  const bool small = !(linear2 > kLeastSquare * limit2) || !(force2 > 0.);
+  const double factor = small ? 1. : square_root(force2 / linear2);
+  found.slides = linear2 >= kSlides * kSlides * limit2;
+  found.force[0] = force.x;
+  found.force[1] = force.y;
+  found.force[2] = factor * moment;
+  for (int k = 0; k < 3; ++k) {
+    found.by_slip[0][k] = force.slope[0][k];
+    found.by_slip[1][k] = force.slope[1][k];
+    const double grows =
+        small ? 0.
+              : (force.x * force.slope[0][k] + force.y * force.slope[1][k]) / force2 -
+                    (x * linear.by[0][k] + y * linear.by[1][k]) / linear2;
+    found.by_slip[2][k] = factor * (linear.by[2][k] + grows * moment);
+  }
+}
+
+/// Derivatives over the normal force N. A patch that keeps its size has forces of N times a
+/// function of the creepages over N. One that grows has half lengths of N^(1/3): its forces are N
+/// times a function of both creepages over N^(1/3) and of the spin, its moment is N^(1/3) times
+/// that.
+void find_by_normal(const RollingCreep& c, double normal, const double* creepage,
+                    ContactCreep& found) noexcept {
+  const bool grows = c.grows == 1;
+  const double power = grows ? 1. / 3. : 1., spin = grows ? 0. : 1.;
+  for (int i = 0; i < 3; ++i) {
+    const double* const by = found.by_slip[i];
+    const double own = grows && i == 2 ? 4. / 3. : 1.;
+    found.by_normal[i] =
+        (own * found.force[i] -
+         (power * (by[0] * creepage[0] + by[1] * creepage[1]) + spin * (by[2] * creepage[2]))) /
+        normal;
+  }
+}
+
+}  // namespace
+
+ContactCreep contact_creep(const RollingCreep& c, int side, double depth, double normal,
+                           const Slip<double>& slip, double per_speed) noexcept {
+  ContactCreep found{};
+  if (!(normal > kLeastNormal)) return found;
+  const double size = c.grows == 1 ? square_root(depth) : 1.;
+  const CreepPatch patch{size * c.half_length, size * c.half_width, c.shear,
+                         c.friction[side] * normal, c.kalker};
+  const LinearCreep linear = linear_creep(patch);
+  const double creepage[3] = {per_speed * slip.along, per_speed * slip.across,
+                              per_speed * slip.spin};
+  const bool is_linear = c.law == CreepLaw::linear;
+  if (is_linear)
+    take_linear(linear, creepage, found);
+  else
+    saturate(c, patch, linear, creepage, found);
+  // Linear creep of a patch that keeps its size does not depend on the normal force.
+  if (!is_linear || c.grows == 1) find_by_normal(c, normal, creepage, found);
+  for (int i = 0; i < 3; ++i)
+    for (double& slope : found.by_slip[i]) slope *= per_speed;
+  return found;
+}
+
+}  // namespace railstep

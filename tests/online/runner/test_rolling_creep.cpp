@@ -1,0 +1,113 @@
+// Creep of a contact by every law: its derivatives, its limit and its loss.
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <random>
+
+#include "online/runner/rolling_creep.h"
+
+using namespace railstep;
+
+namespace {
+
+constexpr double kHertz = 9.4e10;           // N/m^1.5
+constexpr double kPerSpeed = 1. / 40.;      // s/m
+constexpr double kFriction[2] = {.3, .15};  // left, right
+
+/// A patch of 50 kN that grows with the force, or one that keeps its size.
+RollingCreep creep_by(CreepLaw law, bool grows) {
+  const double root = std::sqrt(std::pow(5e4 / kHertz, 2. / 3.));
+  const double part = grows ? root : 1.;
+  return {law,           10,     grows ? 1 : 0,   {kFriction[0], kFriction[1]}, 5.9e-3 / part,
+          4.4e-3 / part, 80.8e9, kalker(1.34, .3)};
+}
+
+double normal_at(double depth) { return kHertz * depth * std::sqrt(depth); }
+
+ContactCreep creep_at(const RollingCreep& c, double depth, const Slip<double>& slip) {
+  return contact_creep(c, 0, depth, normal_at(depth), slip, kPerSpeed);
+}
+
+struct Drawn {
+  double depth;
+  Slip<double> slip;
+};
+/// Penetrations of 20 to 200 kN, and slips of up to a few times the limit of friction.
+Drawn drawn(std::mt19937_64& random, double most_slip) {
+  std::uniform_real_distribution<double> part(-1., 1.);
+  const double force = 1.1e5 + 9e4 * part(random);
+  const double size = most_slip * std::pow(10., -2. + 2. * std::fabs(part(random)));
+  return {std::pow(force / kHertz, 2. / 3.),
+          {size * part(random), size * part(random), 20. * size * part(random)}};
+}
+
+}  // namespace
+
+TEST_CASE("derivatives of a contact's creep are those of its forces", "[rolling_creep]") {
+  for (const CreepLaw law : {CreepLaw::linear, CreepLaw::she, CreepLaw::fastsim, CreepLaw::polach})
+    for (const bool grows : {false, true}) {
+      const RollingCreep c = creep_by(law, grows);
+      std::mt19937_64 random(11);
+      for (int n = 0; n < 200; ++n) {
+        const auto [depth, slip] = drawn(random, .3);
+        INFO("law " << static_cast<int>(law) << ", grows " << grows << ", case " << n);
+        const ContactCreep at = creep_at(c, depth, slip);
+        const double largest = std::max({std::fabs(at.force[0]), std::fabs(at.force[1]), 1.});
+        for (int k = 0; k < 4; ++k) {
+          // FASTSIM has a kink wherever a cell begins to slide.
+          const double step[4] = {3e-7, 3e-7, 3e-6, 1e-6 * depth};
+          const auto moved = [&](double by) {
+            Slip<double> s = slip;
+            (k == 0 ? s.along : k == 1 ? s.across : s.spin) += k < 3 ? by : 0.;
+            return creep_at(c, depth + (k == 3 ? by : 0.), s);
+          };
+          const ContactCreep above = moved(step[k]), below = moved(-step[k]);
+          if (above.slides != below.slides) continue;
+          const double by_depth = 1.5 * normal_at(depth) / depth;
+          for (int i = 0; i < 3; ++i) {
+            const double slope = k < 3 ? at.by_slip[i][k] : by_depth * at.by_normal[i];
+            const double found = above.force[i] - below.force[i];
+            const double size = i == 2 ? .01 * largest : largest;
+            const double allowed = law == CreepLaw::fastsim ? 2e-3 : 1e-7;
+            CHECK(std::fabs(found - 2. * step[k] * slope) <=
+                  allowed * std::fabs(found) + 3e-9 * size);
+          }
+        }
+      }
+    }
+}
+
+TEST_CASE("creep takes work, and is within friction", "[rolling_creep]") {
+  for (const CreepLaw law : {CreepLaw::linear, CreepLaw::she})
+    for (const bool grows : {false, true}) {
+      const RollingCreep c = creep_by(law, grows);
+      std::mt19937_64 random(12);
+      double power = -1e300, beyond = 0., least = 1e300;
+      for (int n = 0; n < 250'000; ++n) {
+        const auto [depth, slip] = drawn(random, 3.);
+        const ContactCreep at = creep_at(c, depth, slip);
+        power = std::max(
+            power, at.force[0] * slip.along + at.force[1] * slip.across + at.force[2] * slip.spin);
+        const double limit = kFriction[0] * normal_at(depth);
+        const double size = std::hypot(at.force[0], at.force[1]) / limit;
+        beyond = std::max(beyond, size);
+        if (at.slides) least = std::min(least, size);
+      }
+      INFO("law " << static_cast<int>(law) << ", grows " << grows);
+      CHECK(power <= 0.);
+      if (law == CreepLaw::linear) continue;
+      CHECK(beyond < 1. + 1e-12);
+      CHECK(least > 1. - 1e-12);
+    }
+}
+
+TEST_CASE("rails have their own friction", "[rolling_creep]") {
+  const RollingCreep c = creep_by(CreepLaw::she, true);
+  const double depth = std::pow(5e4 / kHertz, 2. / 3.);
+  for (const int side : {0, 1}) {
+    const ContactCreep at = contact_creep(c, side, depth, 5e4, {10., 0., 0.}, kPerSpeed);
+    CHECK(at.slides);
+    CHECK(at.force[0] == Approx(-kFriction[side] * 5e4).epsilon(1e-12));
+  }
+  CHECK(contact_creep(c, 0, 1e-30, 0., {1., 0., 0.}, kPerSpeed).force[0] == 0.);
+}
