@@ -1,15 +1,18 @@
 // Laws of a contact patch: time of one force with its derivatives, beside its error. The normal
-// law's is over that of 1024 strips, and over Hertz; a creep law's is the distance from CONTACT's
-// forces over the limit, root mean square of the cases without spin and of those with pure spin up
-// to 0.7.
+// law's is over that of 129 strips, and over Hertz; that of a wheel on profiles, whose zones are
+// found first, over patches of 64 strips about places found offline; a creep law's is the distance
+// from CONTACT's forces over the limit, root mean square of the cases without spin and of those
+// with pure spin up to 0.7.
 #include <benchmark/benchmark.h>
 
 #include <cmath>
 #include <vector>
 
+#include "offline/profile/contact_tables.h"
 #include "online/patch/creep.h"
 #include "online/patch/strip_patch.h"
 #include "support/creep_rows.h"
+#include "support/wheel_pair.h"
 
 namespace railstep {
 namespace {
@@ -17,6 +20,7 @@ namespace {
 constexpr double kRadius = .46, kCrown = .3;          // m
 constexpr double kModulus = 210e9 / (1. - .09);       // N/m2
 constexpr double kHertz = 1.0412e-4, kForce = 100e3;  // approach, m, and force, N, by Hertz
+constexpr double kLeastDepth = 5e-6;                  // m
 
 std::vector<double> gap_of(int strips, double width) {
   std::vector<double> gap;
@@ -49,6 +53,31 @@ void normal(benchmark::State& bench) {
   bench.counters["against_hertz"] = force / kForce - 1.;
 }
 BENCHMARK(normal)->ArgName("strips")->Arg(9)->Arg(17)->Arg(33)->Arg(65)->Arg(129);
+
+/// Zones of the right wheel under 60 kN and the forces of their patches, over `loaded()`.
+void wheel_zones(benchmark::State& bench) {
+  const WheelRail profiles = s1002_on_60e1();
+  const Elastic steel;
+  const ContactTables tables(profiles, steel);
+  const double shift = 1e-3 * static_cast<double>(bench.range(0)), load = 6e4;
+  const WheelsetLoaded exact = loaded(profiles, steel, shift, load);
+  WheelsetPlace at{shift, exact.right.height, exact.roll, 0.};
+  double upright = 0.;
+  int zones = 0;
+  for (auto _ : bench) {
+    benchmark::DoNotOptimize(at);
+    WheelZone zone[kMostZones];
+    zones = find_zones(tables.pair(), at, kLeastDepth, zone);
+    upright = 0.;
+    for (int i = 0; i < zones; ++i)
+      upright += patch_force(patch_of(zone[i]), zone[i].depth).normal /
+                 std::sqrt(1. + zone[i].slope * zone[i].slope);
+    benchmark::DoNotOptimize(upright);
+  }
+  bench.counters["zones"] = zones;
+  bench.counters["error"] = upright / load - 1.;
+}
+BENCHMARK(wheel_zones)->ArgName("shift_mm")->DenseRange(0, 7);
 
 CreepForce row_force(CreepLaw law, int strips, const CreepRow& row) {
   return creep_force(law, strips, normalised_patch(row.ratio, kalker(row.ratio, .3)),

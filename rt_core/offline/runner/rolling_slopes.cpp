@@ -12,8 +12,8 @@ WheelForce wheel_force(const RollingContact& c, double radius, double side, doub
   const Slip<Placed> slip = slip_of(c, r, v, speed, radius, {});
   const Placed normal = normal_force(c, r.depth);
   const ContactCreep creep =
-      contact_creep(c.creep, rail_of(side), r.depth.value, normal.value,
-                    {slip.along.value, slip.across.value, slip.spin.value}, per_rolling(speed));
+      contact_creep(c.creep, friction_of(c.creep, side), r.depth.value, normal.value,
+                    {slip.along.value, slip.across.value, slip.spin.value}, speed);
   Placed by_creep[3];
   for (int i = 0; i < 3; ++i) {
     const double* const by = creep.by_slip[i];

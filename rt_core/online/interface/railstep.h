@@ -58,7 +58,7 @@ enum {
   RAILSTEP_FORCE_SATURATED = 256,   /* an input was beyond its limit, and cut to it */
   RAILSTEP_CONTACT_ILL_POSED =
       512,                  /* compliances of contacts that are not positive or not finite */
-  RAILSTEP_FULL_SLIP = 1024 /* the whole contact patch of a wheel slid */
+  RAILSTEP_FULL_SLIP = 1024 /* the creep of a wheel has saturated */
 };
 
 /* RAILSTEP_VERSION of the library. */

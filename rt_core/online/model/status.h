@@ -16,7 +16,7 @@ enum class Status : std::uint32_t {
   nonfinite_input = 1u << 7,     // an input was not finite: its last good value was held
   force_saturated = 1u << 8,     // an input was beyond its limit, and cut to it
   contact_ill_posed = 1u << 9,   // compliances of contacts that are impossible
-  full_slip = 1u << 10,          // the whole contact patch of a wheel slid
+  full_slip = 1u << 10,          // the creep of a wheel has saturated
 };
 
 constexpr Status operator|(Status a, Status b) noexcept {
@@ -59,8 +59,9 @@ inline constexpr StatusText kStatusTexts[] = {
      "the compliance between contacts is not positive or not finite, and their forces are not "
      "right: set condense.residual_flexibility = false"},
     {Status::full_slip, "full_slip",
-     "the whole contact patch of a wheel slid: its creep force was that of friction, and creepages "
-     "do not change its size"},
+     "the creep of a wheel has saturated: friction limits its force, and more creep does not "
+     "change "
+     "it"},
     {Status::nonfinite_state, "nonfinite_state", "the state is no longer finite"},
 };
 

@@ -74,7 +74,11 @@ CreepPair<Real> she(const CreepPatch& p, const Creepages<Real>& c) noexcept {
   const double mean = .5 * (p.kalker.c11 + p.kalker.c22);
   const Real x = part.x + turned * (scale * (mean - p.kalker.c11)) * c.along;
   const Real y = part.y + turned * (scale * (mean - p.kalker.c22)) * c.across;
-  const Real factor = saturated / sqrt(x * x + y * y) * -p.limit;
+  const Real turned_square = x * x + y * y;
+  // At 30 times the limit spin and the slip across may leave no direction.
+  if (!(value_of(turned_square) > 1e-20))
+    return {-p.limit * part.x / size, -p.limit * part.y / size};
+  const Real factor = saturated / sqrt(turned_square) * -p.limit;
   return {factor * x, factor * y};
 }
 

@@ -10,85 +10,129 @@ constexpr double kBeside = 1.;      // m, gap beside the rail
 constexpr double kReach = 1e-3;     // m: higher minima are not near contact
 constexpr double kAllowance = 1.3;  // of a depth, to which a step may press a zone
 constexpr int kMostMinima = 8;
-constexpr int kHalvings = 3;  // of the distance of two strips, at the edge of a zone
-constexpr int kTurns = 6;     // of the search for a minimum
+constexpr int kFineStrips = 17;  // over the strips to both sides of a minimum
+constexpr int kEdgeStrips = 8;   // between two strips at the edge of a zone
 
 struct TableValue {
   double value, slope;
 };
 
-/// Beyond its ends a table goes on straight.
-TableValue value_at(const ProfileTable& t, double place) noexcept {
-  const double at = (place - t.first) / t.step;
-  std::int32_t i = 0;
-  if (at > 0.) i = at < t.points - 1 ? static_cast<std::int32_t>(at) : t.points - 2;
-  const double *const a = t.value + 2 * i, *const b = a + 2;
-  double x = at - i, beyond = 0.;
-  if (x < 0.) beyond = x, x = 0.;
-  if (x > 1.) beyond = x - 1., x = 1.;
-  // Hermite's cubic: a + x (a' + x (c + x d)).
-  const double rise = b[0] - a[0];
-  const double c = 3. * rise - 2. * a[1] - b[1], d = a[1] + b[1] - 2. * rise;
-  const double slope = a[1] + x * (2. * c + 3. * d * x);
-  return {a[0] + x * (a[1] + x * (c + d * x)) + beyond * slope, slope / t.step};
+/// Intervals of a table and places in them, side by side. Places beyond the ends are taken there.
+struct Cubics {
+  double c0[kZoneStrips], c1[kZoneStrips], c2[kZoneStrips], c3[kZoneStrips], x[kZoneStrips];
+
+  void find(const ProfileTable& t, const double* place, int n) noexcept {
+    const double last = t.points - 2;
+    for (int i = 0; i < n; ++i) {
+      const double at = (place[i] - t.first) * t.per_step;
+      const std::int32_t k = !(at > 0.) ? 0 : static_cast<std::int32_t>(at < last ? at : last);
+      const double* const c = t.coefficient + 4 * k;
+      c0[i] = c[0], c1[i] = c[1], c2[i] = c[2], c3[i] = c[3];
+      x[i] = at - k;
+    }
+  }
+  double value(int i) const noexcept {
+    return c0[i] + x[i] * (c1[i] + x[i] * (c2[i] + x[i] * c3[i]));
+  }
+  /// Over the distance of two points.
+  double slope(int i) const noexcept { return c1[i] + x[i] * (2. * c2[i] + 3. * c3[i] * x[i]); }
+};
+
+/// A point in the rail's frame.
+struct FramePoint {
+  double x, y, z;
+};
+
+/// The points of a wheel's circles at which its normal has no part along the rail.
+struct Lowest {
+  double half_distance, radius;
+  double outwards, up, roll_cosine, roll_sine, yaw, yaw_cosine;
+
+  /// @param growth, slope  of the wheel's radius at s
+  FramePoint point(double s, double growth, double slope) const noexcept {
+    const double r = radius + growth, along = half_distance + s;
+    // About the axle, ahead of the lowest point.
+    const double angle = (roll_sine - slope * roll_cosine) * yaw;
+    const double ahead = r * angle, down = r * (1. - .5 * angle * angle);
+    const double level = along * roll_cosine + down * roll_sine;
+    return {ahead - level * yaw, outwards + level * yaw_cosine + ahead * yaw,
+            up + along * roll_sine - down * roll_cosine};
+  }
+};
+
+Lowest lowest(const WheelOnRail& pair, const WheelsetPlace& at) noexcept {
+  return {pair.half_distance,
+          pair.radius,
+          at.outwards,
+          at.up,
+          1. - .5 * at.roll * at.roll,
+          at.roll * (1. - at.roll * at.roll / 6.),
+          at.yaw,
+          1. - .5 * at.yaw * at.yaw};
 }
 
-bool is_within(const ProfileTable& t, double place) noexcept {
-  return place >= t.first && place <= t.first + (t.points - 1) * t.step;
-}
-
-/// The lowest line of a wheel in the rail's frame.
+/// The line of these points over the rail.
 struct LowestLine {
   const WheelOnRail& pair;
-  const WheelsetPlace& at;
-  double roll_cosine, roll_sine, yaw_cosine;
+  Lowest wheel;
 
-  LowestLine(const WheelOnRail& own, const WheelsetPlace& place) noexcept
-      : pair(own),
-        at(place),
-        roll_cosine(1. - .5 * place.roll * place.roll),
-        roll_sine(place.roll * (1. - place.roll * place.roll / 6.)),
-        yaw_cosine(1. - .5 * place.yaw * place.yaw) {}
-
-  struct Point {
-    double x, y, z;
-  };
-  Point point(double s, const TableValue& wheel) const noexcept {
-    const double radius = pair.radius + wheel.value, along = pair.half_distance + s;
-    const double angle = -wheel.slope * at.yaw;  // about the axle, ahead of the lowest point
-    const double ahead = radius * angle, down = radius * (1. - .5 * angle * angle);
-    const double level = along * roll_cosine + down * roll_sine;
-    return {ahead - level * at.yaw, at.outwards + level * yaw_cosine + ahead * at.yaw,
-            at.up + along * roll_sine - down * roll_cosine};
+  /// Gaps at places on the wheel. @param n  at most kZoneStrips
+  void gaps(const double* s, int n, double* gap) const noexcept {
+    const ProfileTable& rail = pair.rail;
+    const Lowest own = wheel;  // by itself, so that loops need not look at it again
+    const double per_step = pair.wheel.per_step, rail_per_step = rail.per_step;
+    const double begin = rail.first, end = begin + (rail.points - 1) / rail_per_step;
+    Cubics cubics;
+    double y[kZoneStrips], z[kZoneStrips];
+    cubics.find(pair.wheel, s, n);
+#pragma omp simd
+    for (int i = 0; i < n; ++i) {
+      const FramePoint p = own.point(s[i], cubics.value(i), per_step * cubics.slope(i));
+      y[i] = p.y;
+      z[i] = p.z;
+    }
+    cubics.find(rail, y, n);
+#pragma omp simd
+    for (int i = 0; i < n; ++i) {
+      const bool over = y[i] >= begin && y[i] <= end;
+      gap[i] = over ? z[i] - cubics.value(i) : kBeside;
+    }
   }
-  double gap(const Point& p) const noexcept {
-    return is_within(pair.rail, p.y) ? p.z - value_at(pair.rail, p.y).value : kBeside;
-  }
-  double gap(double s) const noexcept { return gap(point(s, value_at(pair.wheel, s))); }
-  /// Derivative of the gap over s, as without yaw, over what makes that of a steep rail large.
-  double rise(double s) const noexcept {
-    const TableValue wheel = value_at(pair.wheel, s);
-    const double rail = value_at(pair.rail, point(s, wheel).y).slope;
-    return ((roll_sine - wheel.slope * roll_cosine) -
-            rail * (roll_cosine + wheel.slope * roll_sine)) /
-           square_root(1. + rail * rail);
+  TableValue wheel_at(double s) const noexcept {
+    Cubics cubics;
+    cubics.find(pair.wheel, &s, 1);
+    return {cubics.value(0), pair.wheel.per_step * cubics.slope(0)};
   }
 };
 
 /// Gaps at the search's strips.
 struct Search {
-  double first, step;
+  const double* place;
   double gap[kSearchStrips];
-  double place(int i) const noexcept { return first + step * i; }
 };
 
+/// Gaps to the rail's table as if it were straight between its points.
 void look(const LowestLine& line, Search& search) noexcept {
-  const ProfileTable& wheel = line.pair.wheel;
-  search.first = wheel.first;
-  search.step = (wheel.points - 1) * wheel.step / (kSearchStrips - 1);
+  const ProfileTable& rail = line.pair.rail;
+  const Lowest wheel = line.wheel;
+  const double rail_first = rail.first, rail_per_step = rail.per_step;
+  const double *const place = line.pair.search_place, *const growth = line.pair.search_growth,
+                      *const slope = line.pair.search_slope;
+  search.place = place;
+  double y[kSearchStrips], z[kSearchStrips];
+#pragma omp simd
   for (int i = 0; i < kSearchStrips; ++i) {
-    const double s = search.place(i);
-    search.gap[i] = line.gap(line.point(s, value_at(wheel, s)));
+    const FramePoint p = wheel.point(place[i], growth[i], slope[i]);
+    y[i] = (p.y - rail_first) * rail_per_step;
+    z[i] = p.z;
+  }
+  const double last = rail.points - 1;
+  for (int i = 0; i < kSearchStrips; ++i) {
+    search.gap[i] = kBeside;
+    if (!(y[i] >= 0.) || !(y[i] < last)) continue;
+    const auto k = static_cast<std::int32_t>(y[i]);
+    const double* const own = rail.coefficient + 4 * k;
+    search.gap[i] = z[i] - (own[0] + (y[i] - k) * (own[4] - own[0]));
   }
 }
 
@@ -98,29 +142,23 @@ struct Minimum {
   double place, gap;  // m, between strips too
 };
 
-/// The minimum about a strip, by regula falsi for the derivative of the gap, whose kept end counts
-/// half (Illinois).
+/// The minimum about a strip of the search, by the parabola through three finer ones.
 Minimum minimum_at(const LowestLine& line, const Search& search, int i) noexcept {
-  Minimum found{i, 0, kSearchStrips - 1, search.place(i), search.gap[i]};
-  double low = search.place(i > 0 ? i - 1 : i),
-         high = search.place(i + 1 < kSearchStrips ? i + 1 : i);
-  double at_low = line.rise(low), at_high = line.rise(high);
-  int kept = 0;
-  for (int turn = 0; turn < kTurns && at_low < 0. && at_high > 0.; ++turn) {
-    const double middle = low + (high - low) * (at_low / (at_low - at_high));
-    const double own = line.rise(middle);
-    if (own < 0.) {
-      low = middle, at_low = own;
-      if (kept == 1) at_high *= .5;
-      kept = 1;
-    } else {
-      high = middle, at_high = own;
-      if (kept == -1) at_low *= .5;
-      kept = -1;
-    }
-    const double gap = line.gap(middle);
-    if (gap < found.gap) found.place = middle, found.gap = gap;
-  }
+  const int from = i > 0 ? i - 1 : i, to = i + 1 < kSearchStrips ? i + 1 : i;
+  const double first = search.place[from], step = (search.place[to] - first) / (kFineStrips - 1);
+  double s[kFineStrips], gap[kFineStrips];
+  for (int k = 0; k < kFineStrips; ++k) s[k] = first + k * step;
+  line.gaps(s, kFineStrips, gap);
+  int least = 0;
+  for (int k = 1; k < kFineStrips; ++k)
+    if (gap[k] < gap[least]) least = k;
+  Minimum found{i, 0, kSearchStrips - 1, s[least], gap[least]};
+  if (least == 0 || least == kFineStrips - 1) return found;
+  const double half = .5 * (gap[least + 1] - gap[least - 1]),
+               bend = gap[least + 1] - 2. * gap[least] + gap[least - 1];
+  if (!(bend > 0.) || gap[least - 1] >= kBeside || gap[least + 1] >= kBeside) return found;
+  found.place -= step * half / bend;
+  found.gap -= .5 * half * half / bend;
   return found;
 }
 
@@ -142,9 +180,11 @@ int find_minima(const LowestLine& line, const Search& search, double least_depth
   const double* const gap = search.gap;
   for (int i = 1; i < kSearchStrips; ++i)
     if (gap[i] < gap[lowest]) lowest = i;
-  if (gap[lowest] >= kBeside) return 0;
-  for (int i = 1; i + 1 < kSearchStrips; ++i) {
-    const bool is_least = gap[i] <= gap[i - 1] && gap[i] < gap[i + 1];
+  if (!(gap[lowest] < kBeside)) return 0;
+  for (int i = 0; i < kSearchStrips; ++i) {
+    const double before = i > 0 ? gap[i - 1] : kBeside,
+                 after = i + 1 < kSearchStrips ? gap[i + 1] : kBeside;
+    const bool is_least = gap[i] <= before && gap[i] < after;
     if (!is_least || (gap[i] > kReach && i != lowest)) continue;
     const Minimum own = minimum_at(line, search, i);
     if (count > 0) {
@@ -161,7 +201,6 @@ int find_minima(const LowestLine& line, const Search& search, double least_depth
     if (count > 0) found[count].first = found[count - 1].last;
     ++count;
   }
-  if (count == 0) found[count++] = minimum_at(line, search, lowest);
   return count;
 }
 
@@ -177,36 +216,50 @@ int leave_deepest(Minimum* found, int count) noexcept {
   return count;
 }
 
-/// A place with a gap above a level, near one below it. @param inner, outer  of both kinds
-double edge_of(const LowestLine& line, double inner, double outer, double level) noexcept {
-  for (int turn = 0; turn < kHalvings; ++turn) {
-    const double middle = .5 * (inner + outer);
-    (line.gap(middle) < level ? inner : outer) = middle;
+/// Places to both sides of another with gaps above a level, next to some below it: between the
+/// strips of the search a and a + 1, and b - 1 and b.
+struct Edges {
+  double from, to;
+};
+Edges edges_of(const LowestLine& line, const Search& search, int a, int b, double level,
+               double place) noexcept {
+  constexpr int n = kEdgeStrips;
+  const double left_step = (search.place[a + 1] - search.place[a]) / n,
+               right_step = (search.place[b] - search.place[b - 1]) / n;
+  double s[2 * n], gap[2 * n];
+  for (int k = 0; k < n; ++k) {
+    s[k] = search.place[a] + k * left_step;
+    s[n + k] = search.place[b] - k * right_step;
   }
-  return outer;
+  line.gaps(s, 2 * n, gap);
+  int left = 0, right = 0;
+  while (left + 1 < n && !(gap[left + 1] < level) && s[left + 1] < place) ++left;
+  while (right + 1 < n && !(gap[n + right + 1] < level) && s[n + right + 1] > place) ++right;
+  return {s[left], s[n + right]};
 }
 
 void fill_zone(const LowestLine& line, const Search& search, const Minimum& own, double least_depth,
                WheelZone& zone) noexcept {
   const double level = own.gap + kAllowance * (level_of(own.gap, least_depth) - own.gap);
-  int a = own.at > own.first ? own.at - 1 : own.at, b = own.at < own.last ? own.at + 1 : own.at;
+  const int inner = own.at > 0 ? own.at < kSearchStrips - 1 ? own.at : kSearchStrips - 2 : 1;
+  int a = inner - 1, b = inner + 1;
   while (a > own.first && search.gap[a] < level) --a;
   while (b < own.last && search.gap[b] < level) ++b;
-  const double from = edge_of(line, search.place(a + 1), search.place(a), level),
-               width = (edge_of(line, search.place(b - 1), search.place(b), level) - from) /
-                       (kZoneStrips - 1);
-  const int deepest = static_cast<int>((own.place - from) / width + .5);
-  const double first = own.place - deepest * width;
-  double gap[kZoneStrips];
-  for (int k = 0; k < kZoneStrips; ++k) gap[k] = line.gap(first + k * width);
-  const TableValue own_wheel = value_at(line.pair.wheel, own.place);
-  const LowestLine::Point point = line.point(own.place, own_wheel);
+  const Edges edges = edges_of(line, search, a, b, level, own.place);
+  const double width = (edges.to - edges.from) / (kZoneStrips - 1);
+  const int deepest = static_cast<int>((own.place - edges.from) / width + .5);
+  double s[kZoneStrips], gap[kZoneStrips];
+  for (int k = 0; k < kZoneStrips; ++k) s[k] = own.place + (k - deepest) * width;
+  line.gaps(s, kZoneStrips, gap);
+  const double least = gap[deepest];
+  const TableValue own_wheel = line.wheel_at(own.place);
+  const FramePoint point = line.wheel.point(own.place, own_wheel.value, own_wheel.slope);
   const double along = 1. / square_root(1. + own_wheel.slope * own_wheel.slope);
   // The wheel's surface falls as its radius grows, and turns with the roll.
-  zone.slope = (line.roll_sine - own_wheel.slope * line.roll_cosine) /
-               (line.roll_cosine + own_wheel.slope * line.roll_sine);
+  zone.slope = (line.wheel.roll_sine - own_wheel.slope * line.wheel.roll_cosine) /
+               (line.wheel.roll_cosine + own_wheel.slope * line.wheel.roll_sine);
   const double normal = 1. / square_root(1. + zone.slope * zone.slope);
-  zone.depth = -normal * own.gap;
+  zone.depth = -normal * least;
   zone.s = own.place;
   zone.ahead = point.x;
   zone.y = point.y;
@@ -214,7 +267,7 @@ void fill_zone(const LowestLine& line, const Search& search, const Minimum& own,
   zone.cosine_of_wheel = along;
   const double overlap = kVirtualPart * zone.depth;
   for (int k = 0; k < kZoneStrips; ++k) {
-    const double above = normal * (gap[k] - own.gap);
+    const double above = normal * (gap[k] - least);
     zone.gap[k] = above > 0. ? above : 0.;
   }
   zone.at_edge = (a == 0 && zone.gap[0] < overlap) ||
@@ -235,7 +288,7 @@ void fill_zone(const LowestLine& line, const Search& search, const Minimum& own,
 
 int find_zones(const WheelOnRail& pair, const WheelsetPlace& at, double least_depth,
                WheelZone* zone) noexcept {
-  const LowestLine line(pair, at);
+  const LowestLine line{pair, lowest(pair, at)};
   Search search;
   look(line, search);
   Minimum found[kMostMinima];

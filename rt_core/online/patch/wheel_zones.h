@@ -5,17 +5,19 @@
 
 namespace railstep {
 
-/// A profile as a table over equally spaced places: values and first derivatives, between which it
-/// is cubic.
+/// A profile as a table over equally spaced points: in the interval from point i on it is
+///   c0 + x (c1 + x (c2 + x c3)),  x = (place - first) per_step - i.
 struct ProfileTable {
-  std::int32_t points;  // at least 2
-  double first, step;   // m
-  const double* value;  // [points][2] m, and the derivative times step, m
+  std::int32_t points;        // at least 2
+  double first, per_step;     // m; points a metre
+  const double* coefficient;  // [points][4] m; of the last point the first one alone counts
 };
 
 /// A wheel and its rail, both seen as the right ones: y outwards, z up.
 struct WheelOnRail {
-  ProfileTable wheel;    // growth of the radius over s, outwards from the tread datum
+  ProfileTable wheel;  // growth of the radius over s, outwards from the tread datum
+  // The same at places as far apart along the profile, from end to end.
+  const double *search_place, *search_growth, *search_slope;  // [kSearchStrips] m, m, 1
   ProfileTable rail;     // height over y outwards from the middle of the track
   double half_distance;  // from the wheelset's middle to the tread datum, m
   double radius;         // at the tread datum, m
@@ -29,8 +31,8 @@ struct WheelsetPlace {
   double yaw;           // rad, positive where it moves this wheel back
 };
 
-inline constexpr int kSearchStrips = 128;  // between which a wheel is looked at
-inline constexpr int kZoneStrips = 33;     // of one zone
+inline constexpr int kSearchStrips = 128;  // at which a wheel is looked at
+inline constexpr int kZoneStrips = 25;     // of one zone
 inline constexpr int kMostZones = 3;       // of a wheel: tread, throat and flange
 
 /// Where a wheel and its rail overlap, or are next to do so.
@@ -45,17 +47,20 @@ struct WheelZone {
   double gap[kZoneStrips];
   StripPatch patch;  // without its gaps; see patch_of()
 };
+/// Valid as long as the zone lives.
+StripPatch patch_of(WheelZone&&) = delete;
 inline StripPatch patch_of(const WheelZone& zone) noexcept {
   StripPatch patch = zone.patch;
   patch.gap = zone.gap;
   return patch;
 }
 
-/// Finds the zones of a wheel, at most kMostZones, the deepest ones, in the order of s. A yawed
-/// wheel touches along the line that is lowest on each of its circles, to second order in the yaw:
-/// before the axle by -r F' yaw, F' the slope of the wheel's growth. Minima of the gap are one zone
-/// where the deeper one's overlap, by the law of patches, goes beyond the ridge between them.
-/// @param least_depth  m: zones of less depth are looked at as if they were that deep
+/// Finds the zones of a wheel, at most kMostZones, those of least gap, in the order of s. A yawed
+/// wheel touches where its normal has no part along the rail: before the axle by r (roll - F') yaw,
+/// F' the slope of the wheel's growth. Gaps have the yaw to second order, slopes to first order.
+/// Minima of the gap are one zone where the deeper one's overlap, by the law of patches, goes
+/// beyond the ridge between them.
+/// @param least_depth  upright, m: zones of less depth are looked at as if they were that deep
 /// @param zone  [kMostZones] out
 /// @returns how many zones there are: one at least where the wheel is above its rail, 0 beside it
 int find_zones(const WheelOnRail& pair, const WheelsetPlace& at, double least_depth,

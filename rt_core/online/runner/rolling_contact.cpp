@@ -60,7 +60,7 @@ WheelForce wheel_force(const RollingContact& c, double radius, double side, doub
   const Slip<double> slips{slip.along.value, slip.across.value, slip.spin.value};
   const Placed normal = normal_force(c, placed.depth);
   const ContactCreep creep =
-      contact_creep(c.creep, rail_of(side), r.depth, normal.value, slips, per_rolling(speed));
+      contact_creep(c.creep, friction_of(c.creep, side), r.depth, normal.value, slips, speed);
   find_slopes(r, slip, normal, creep, slopes);
   return wheel_force(r, normal.value, slips, creep);
 }

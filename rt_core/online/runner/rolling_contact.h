@@ -10,7 +10,6 @@ namespace railstep {
 // A wheel on its rail. Its geometry depends on four of the wheelset's motions alone: y, z, roll and
 // yaw. T is double, or a Dual over these four.
 
-inline constexpr double kLeastRolling = .1;  // m/s: creepages of slower wheels are over this speed
 inline constexpr BodyMotion kPlaced[4] = {BodyMotion::y, BodyMotion::z, BodyMotion::roll,
                                           BodyMotion::yaw};
 using Placed = Dual<4>;
@@ -168,12 +167,6 @@ Slip<T> slip_of(const RollingContact& c, const WheelRows<T>& r, const double* v,
           r.spin_roll * v[3] + r.spin_spin * spin + r.n_z * v[5]};
 }
 
-/// Reciprocal of the speed over which creepages are taken, s/m.
-inline double per_rolling(double speed) noexcept {
-  const double size = std::fabs(speed);
-  return 1. / (size > kLeastRolling ? size : kLeastRolling);
-}
-
 /// Normal force of a contact in touch, N.
 template <typename T>
 T normal_force(const RollingContact& c, const T& depth) noexcept {
@@ -181,8 +174,10 @@ T normal_force(const RollingContact& c, const T& depth) noexcept {
   return c.hertz * depth * sqrt(depth);
 }
 
-/// Index of a rail by its side.
-inline int rail_of(double side) noexcept { return side > 0. ? 0 : 1; }
+/// Friction of a rail by its side.
+inline double friction_of(const RollingCreep& creep, double side) noexcept {
+  return creep.friction[side > 0. ? 0 : 1];
+}
 
 /// Over the six motions of the wheelset, N and N m.
 template <typename T>
@@ -207,7 +202,7 @@ struct WheelForce {
   double depth;           // penetration, m; forces are 0 unless it is above 0
   double normal, across;  // N; across: of creep
   double generalised[6];  // over the wheelset's motions, N and N m; the first three are x, y, z
-  double creep_power;     // W, not above 0
+  double creep_power;     // W; of linear creep not above 0
   bool slides;            // ContactCreep::slides
 };
 
@@ -239,7 +234,7 @@ inline WheelForce wheel_force(const RollingContact& c, double radius, double sid
   const double normal = normal_force(c, r.depth);
   return wheel_force(
       r, normal, slip,
-      contact_creep(c.creep, rail_of(side), r.depth, normal, slip, per_rolling(speed)));
+      contact_creep(c.creep, friction_of(c.creep, side), r.depth, normal, slip, speed));
 }
 
 /// The same with derivatives.

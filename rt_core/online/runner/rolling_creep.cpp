@@ -7,9 +7,9 @@ namespace railstep {
 
 namespace {
 
-constexpr double kLeastNormal = 1e-6;   // N
-constexpr double kLeastSquare = 1e-20;  // of linear creep over the limit: it has a direction beyond
-constexpr double kSlides = 3.;          // linear creep over the limit; Shen, Hedrick and Elkins
+constexpr double kLeastNormal = 1e-6;  // N
+constexpr double kLeastSize = 1e-10;   // of linear creep over the limit: it has a direction beyond
+constexpr double kSlides = 3.;         // linear creep over the limit; Shen, Hedrick and Elkins
 
 /// Linear creep: forces along and across and the moment over creepages, N, N m and N m2.
 struct LinearCreep {
@@ -35,29 +35,28 @@ void take_linear(const LinearCreep& linear, const double* creepage, ContactCreep
   }
 }
 
-/// Forces by a law, and the linear moment less by the same factor as they are.
+/// Forces by a law, and the linear moment, less by Shen, Hedrick and Elkins' factor of linear creep
+/// over the limit: other laws have forces where linear ones are 0.
 void saturate(const RollingCreep& c, const CreepPatch& patch, const LinearCreep& linear,
               const double* creepage, ContactCreep& found) noexcept {
   const CreepForce force =
       creep_force(c.law, c.strips, patch, {creepage[0], creepage[1], creepage[2]});
   const double x = sum_of(linear.by[0], creepage), y = sum_of(linear.by[1], creepage),
                moment = sum_of(linear.by[2], creepage);
-  const double linear2 = x * x + y * y, force2 = force.x * force.x + force.y * force.y;
-  const double limit2 = patch.limit * patch.limit;
-  const bool small = !(linear2 > kLeastSquare * limit2) || !(force2 > 0.);
-  const double factor = small ? 1. : square_root(force2 / linear2);
-  found.slides = linear2 >= kSlides * kSlides * limit2;
+  const double size = square_root(x * x + y * y), u = size / patch.limit;
+  found.slides = u >= kSlides;
+  const double factor = found.slides ? 1. / u : 1. - u * (1. / 3.) + u * u * (1. / 27.);
+  const double by_u = found.slides ? -1. / (u * u) : -1. / 3. + u * (2. / 27.);
   found.force[0] = force.x;
   found.force[1] = force.y;
   found.force[2] = factor * moment;
   for (int k = 0; k < 3; ++k) {
     found.by_slip[0][k] = force.slope[0][k];
     found.by_slip[1][k] = force.slope[1][k];
-    const double grows =
-        small ? 0.
-              : (force.x * force.slope[0][k] + force.y * force.slope[1][k]) / force2 -
-                    (x * linear.by[0][k] + y * linear.by[1][k]) / linear2;
-    found.by_slip[2][k] = factor * (linear.by[2][k] + grows * moment);
+    const double grows = size > kLeastSize * patch.limit
+                             ? (x * linear.by[0][k] + y * linear.by[1][k]) / (size * patch.limit)
+                             : 0.;
+    found.by_slip[2][k] = factor * linear.by[2][k] + by_u * grows * moment;
   }
 }
 
@@ -79,18 +78,30 @@ void find_by_normal(const RollingCreep& c, double normal, const double* creepage
   }
 }
 
+/// The same with x and the moment the other way round.
+void mirror(ContactCreep& creep) noexcept {
+  for (int i = 0; i < 3; i += 2) {
+    creep.force[i] = -creep.force[i];
+    creep.by_normal[i] = -creep.by_normal[i];
+    creep.by_slip[i][1] = -creep.by_slip[i][1];
+    creep.by_slip[1][i] = -creep.by_slip[1][i];
+  }
+}
+
 }  // namespace
 
-ContactCreep contact_creep(const RollingCreep& c, int side, double depth, double normal,
-                           const Slip<double>& slip, double per_speed) noexcept {
+ContactCreep contact_creep(const RollingCreep& c, double friction, double depth, double normal,
+                           const Slip<double>& slip, double speed) noexcept {
   ContactCreep found{};
   if (!(normal > kLeastNormal)) return found;
   const double size = c.grows == 1 ? square_root(depth) : 1.;
-  const CreepPatch patch{size * c.half_length, size * c.half_width, c.shear,
-                         c.friction[side] * normal, c.kalker};
+  const CreepPatch patch{size * c.half_length, size * c.half_width, c.shear, friction * normal,
+                         c.kalker};
   const LinearCreep linear = linear_creep(patch);
-  const double creepage[3] = {per_speed * slip.along, per_speed * slip.across,
-                              per_speed * slip.spin};
+  const double per_speed = per_rolling(speed);
+  const bool backwards = speed < 0.;  // the mirror image of rolling ahead
+  const double ahead = backwards ? -per_speed : per_speed;
+  const double creepage[3] = {ahead * slip.along, per_speed * slip.across, ahead * slip.spin};
   const bool is_linear = c.law == CreepLaw::linear;
   if (is_linear)
     take_linear(linear, creepage, found);
@@ -100,6 +111,7 @@ ContactCreep contact_creep(const RollingCreep& c, int side, double depth, double
   if (!is_linear || c.grows == 1) find_by_normal(c, normal, creepage, found);
   for (int i = 0; i < 3; ++i)
     for (double& slope : found.by_slip[i]) slope *= per_speed;
+  if (backwards) mirror(found);
   return found;
 }
 

@@ -1,4 +1,6 @@
 #pragma once
+#include <cmath>
+
 #include "online/model/runner_model.h"
 
 namespace railstep {
@@ -15,15 +17,23 @@ struct ContactCreep {
   double force[3];
   double by_slip[3][3];  // over Slip's along, across and spin
   double by_normal[3];   // over the normal force, at the same slip
-  bool slides;           // linear creep would be at least three times the limit of friction
+  bool slides;           // linear creep would be at least three times the limit: it has saturated
 };
 
-/// Creep of a contact in touch by the scene's law; creepages are slip times per_speed, s/m. The
-/// moment is that of linear creep, less by the same factor as the force. A force under 1 uN makes
-/// no creep.
-/// @param side   0: left, 1: right
+inline constexpr double kLeastRolling = .1;  // m/s: creepages of slower wheels are over this speed
+/// Reciprocal of the speed over which creepages are taken, s/m.
+inline double per_rolling(double speed) noexcept {
+  const double size = std::fabs(speed);
+  return 1. / (size > kLeastRolling ? size : kLeastRolling);
+}
+
+/// Creep of a contact in touch by the scene's law. The moment is that of linear creep times
+/// 1 - u/3 + u^2/27, u the linear force over the limit, and 1/u from u = 3 on. A normal force under
+/// 1 uN makes no creep.
+/// @param friction  coefficient
 /// @param depth  penetration, m, above 0
-ContactCreep contact_creep(const RollingCreep& c, int side, double depth, double normal,
-                           const Slip<double>& slip, double per_speed) noexcept;
+/// @param speed  of the wheelset, m/s
+ContactCreep contact_creep(const RollingCreep& c, double friction, double depth, double normal,
+                           const Slip<double>& slip, double speed) noexcept;
 
 }  // namespace railstep

@@ -72,7 +72,7 @@ struct WheelsetLaw {
   double rate_at_zero[kMotions + 6];
   double kept[2][kWheelForces];  // State::wheel_force of the last evaluation
   bool lost;                     // a wheel was free there
-  bool slides;                   // the whole patch of a wheel did
+  bool slides;                   // the creep of a wheel has saturated
 
   int size() const noexcept { return seated ? kMotions + 6 : kMotions; }
   /// @param slopes  out: of the normal and creep forces of both wheels, which are kWheelsetRank

@@ -11,7 +11,7 @@ using namespace railstep;
 namespace {
 
 constexpr double kHertz = 9.4e10;           // N/m^1.5
-constexpr double kPerSpeed = 1. / 40.;      // s/m
+constexpr double kSpeed = 40.;              // m/s
 constexpr double kFriction[2] = {.3, .15};  // left, right
 
 /// A patch of 50 kN that grows with the force, or one that keeps its size.
@@ -25,7 +25,7 @@ RollingCreep creep_by(CreepLaw law, bool grows) {
 double normal_at(double depth) { return kHertz * depth * std::sqrt(depth); }
 
 ContactCreep creep_at(const RollingCreep& c, double depth, const Slip<double>& slip) {
-  return contact_creep(c, 0, depth, normal_at(depth), slip, kPerSpeed);
+  return contact_creep(c, kFriction[0], depth, normal_at(depth), slip, kSpeed);
 }
 
 struct Drawn {
@@ -101,13 +101,53 @@ TEST_CASE("creep takes work, and is within friction", "[rolling_creep]") {
     }
 }
 
-TEST_CASE("rails have their own friction", "[rolling_creep]") {
+TEST_CASE("the limit of creep is friction times normal force", "[rolling_creep]") {
   const RollingCreep c = creep_by(CreepLaw::she, true);
   const double depth = std::pow(5e4 / kHertz, 2. / 3.);
   for (const int side : {0, 1}) {
-    const ContactCreep at = contact_creep(c, side, depth, 5e4, {10., 0., 0.}, kPerSpeed);
+    const ContactCreep at = contact_creep(c, kFriction[side], depth, 5e4, {10., 0., 0.}, kSpeed);
     CHECK(at.slides);
     CHECK(at.force[0] == Approx(-kFriction[side] * 5e4).epsilon(1e-12));
   }
-  CHECK(contact_creep(c, 0, 1e-30, 0., {1., 0., 0.}, kPerSpeed).force[0] == 0.);
+  CHECK(contact_creep(c, .3, 1e-30, 0., {1., 0., 0.}, kSpeed).force[0] == 0.);
+}
+
+TEST_CASE("the moment of a contact is bounded where linear creep has no force", "[rolling_creep]") {
+  for (const CreepLaw law : {CreepLaw::she, CreepLaw::fastsim, CreepLaw::polach}) {
+    const RollingCreep c = creep_by(law, false);
+    const double depth = std::pow(5e4 / kHertz, 2. / 3.);
+    for (const double spin : {-60., -5., 5., 60.}) {
+      const double across =
+          -c.kalker.c23 / c.kalker.c22 * std::sqrt(c.half_length * c.half_width) * spin;
+      for (const double off : {0., 1e-6, 1e-2}) {
+        const ContactCreep linear =
+            creep_at(creep_by(CreepLaw::linear, false), depth, {0., across * (1. + off), spin});
+        const ContactCreep at = creep_at(c, depth, {0., across * (1. + off), spin});
+        CHECK(std::fabs(at.force[2]) <= std::fabs(linear.force[2]));
+        CHECK(std::fabs(at.by_slip[2][1]) < 2. * std::fabs(linear.by_slip[2][1]));
+      }
+    }
+  }
+}
+
+TEST_CASE("a wheel that rolls back creeps as the mirror image", "[rolling_creep]") {
+  for (const CreepLaw law :
+       {CreepLaw::linear, CreepLaw::she, CreepLaw::fastsim, CreepLaw::polach}) {
+    const RollingCreep c = creep_by(law, true);
+    std::mt19937_64 random(13);
+    for (int n = 0; n < 100; ++n) {
+      const auto [depth, slip] = drawn(random, .3);
+      const double normal = normal_at(depth);
+      const ContactCreep ahead = contact_creep(c, .3, depth, normal, slip, kSpeed),
+                         back = contact_creep(c, .3, depth, normal,
+                                              {-slip.along, slip.across, -slip.spin}, -kSpeed);
+      constexpr double kMirrored[3] = {-1., 1., -1.};
+      for (int i = 0; i < 3; ++i) {
+        CHECK(back.force[i] == kMirrored[i] * ahead.force[i]);
+        CHECK(back.by_normal[i] == kMirrored[i] * ahead.by_normal[i]);
+        for (int k = 0; k < 3; ++k)
+          CHECK(back.by_slip[i][k] == kMirrored[i] * kMirrored[k] * ahead.by_slip[i][k]);
+      }
+    }
+  }
 }

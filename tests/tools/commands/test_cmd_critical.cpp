@@ -205,6 +205,12 @@ TEST_CASE("what a vehicle in space cannot be asked is refused", "[critical]") {
   CHECK(std::count(lost.err.begin(), lost.err.end(), '\n') == 1);  // one error, told once
   refused("critical " + shipped("bogie_at_speed"), "E-VEHICLE-27");
   refused("modes --speed 20 " + kScene + " --set track.rails=1", "E-VEHICLE-26");
+  const std::string creep = "modes --speed 20 " + kScene + " --set 'contact.creep=\"";
+  refused(creep + "fastsim\"' --set contact.friction=0.3", "E-CONTACT-07");
+  refused(creep + "polach\"' --set contact.friction=0.3", "E-CONTACT-07");
+  refused(creep + "she\"'", "E-KEY-01");
+  refused(creep + "she\"' --set contact.friction=-0.3", "E-KEY-05");
+  refused(creep + "linear\"' --set contact.friction=0.3", "E-KEY-02");
 }
 
 namespace {
