@@ -154,7 +154,8 @@ struct RailRate {
   double y, z, roll;
 };
 
-/// Slip of a contact. @param v      [6] rates of the wheelset's motions
+/// Slip of a contact.
+/// @param v      [6] rates of the wheelset's motions
 /// @param speed  of the wheelset's frame, m/s
 template <typename T>
 Slip<T> slip_of(const RollingContact& c, const WheelRows<T>& r, const double* v, double speed,
