@@ -247,7 +247,9 @@ void fill_zone(const LowestLine& line, const Search& search, const Minimum& own,
   while (b < own.last && search.gap[b] < level) ++b;
   const Edges edges = edges_of(line, search, a, b, level, own.place);
   const double width = (edges.to - edges.from) / (kZoneStrips - 1);
-  const int deepest = static_cast<int>((own.place - edges.from) / width + .5);
+  const double strips_before = (own.place - edges.from) / width;
+  int deepest = static_cast<int>(strips_before);
+  if (strips_before - deepest > .5) ++deepest;
   double s[kZoneStrips], gap[kZoneStrips];
   for (int k = 0; k < kZoneStrips; ++k) s[k] = own.place + (k - deepest) * width;
   line.gaps(s, kZoneStrips, gap);

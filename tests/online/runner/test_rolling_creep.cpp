@@ -49,7 +49,9 @@ TEST_CASE("derivatives of a contact's creep are those of its forces", "[rolling_
       const RollingCreep c = creep_by(law, grows);
       std::mt19937_64 random(11);
       for (int n = 0; n < 200; ++n) {
-        const auto [depth, slip] = drawn(random, .3);
+        const Drawn own = drawn(random, .3);
+        const double depth = own.depth;
+        const Slip<double> slip = own.slip;
         INFO("law " << static_cast<int>(law) << ", grows " << grows << ", case " << n);
         const ContactCreep at = creep_at(c, depth, slip);
         const double largest = std::max({std::fabs(at.force[0]), std::fabs(at.force[1]), 1.});
