@@ -164,7 +164,7 @@ TEST_CASE("a sensor on a vehicle in space moves as the point of its rigid body",
 
 TEST_CASE("a braked wheelset creeps as its law says, and slides at the limit of friction",
           "[rail_vehicle][inputs]") {
-  // Treads without slope, so that there is no spin. Shen, Hedrick and Elkins: T / (mu N) is
+  // The treads have no slope, so there is no spin. By Shen, Hedrick and Elkins T / (mu N) is
   // 1 - (1 - u/3)^3, u the linear creep force over mu N.
   constexpr double kFriction = .25, kF11 = 9.25e6, kRadius = .46, kSpeed = 40.;
   const Words changes{"contact.creep=\"she\"", "contact.slope=0.0",

@@ -214,7 +214,7 @@ struct ContactSlopes {
   double spread[6][3];  // forces on the motions by a unit of each of the three
 };
 
-/// Of a contact in touch whose creep is known.
+/// The force at a contact in touch whose creep is known.
 inline WheelForce wheel_force(const WheelRows<double>& r, double normal, const Slip<double>& slip,
                               const ContactCreep& creep) noexcept {
   const double* const f = creep.force;
