@@ -20,7 +20,7 @@ using namespace railstep::fuzz;
 namespace {
 
 constexpr std::size_t kSlots = 3;
-constexpr std::uint32_t kKnownBits = 2 * RAILSTEP_FULL_SLIP - 1;
+constexpr std::uint32_t kKnownBits = 2 * RAILSTEP_BEYOND_PROFILE - 1;
 
 /// A model and a run in their own memory; either may be missing.
 struct Slot {

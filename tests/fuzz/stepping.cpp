@@ -15,7 +15,7 @@ namespace railstep::fuzz {
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr std::uint32_t kKnownBits = 2 * RAILSTEP_FULL_SLIP - 1;
+constexpr std::uint32_t kKnownBits = 2 * RAILSTEP_BEYOND_PROFILE - 1;
 constexpr std::uint64_t kMostState = std::uint64_t{1} << 16;  // bytes: some thousand unknowns
 constexpr double kMostWork = 5e6;                             // bytes of state times steps
 

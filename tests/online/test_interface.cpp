@@ -188,6 +188,7 @@ TEST_CASE("status bits of the C interface are those of the core", "[interface]")
   CHECK(RAILSTEP_LARGE_TURN == static_cast<int>(Status::large_turn));
   CHECK(RAILSTEP_CONTACT_ILL_POSED == static_cast<int>(Status::contact_ill_posed));
   CHECK(RAILSTEP_FULL_SLIP == static_cast<int>(Status::full_slip));
+  CHECK(RAILSTEP_BEYOND_PROFILE == static_cast<int>(Status::beyond_profile));
   CHECK(RAILSTEP_NONFINITE_INPUT == static_cast<int>(Status::nonfinite_input));
   CHECK(RAILSTEP_FORCE_SATURATED == static_cast<int>(Status::force_saturated));
 }

@@ -46,12 +46,6 @@ const std::string kUneven =
     "irregularity={spectrum=\"german_low\",geometries=[\"vertical\",\"alignment\",\"cross_level\"],"
     "period_m=1000.0}";
 
-double largest_of(const std::vector<double>& values) {
-  double most = 0.;
-  for (const double x : values) most = std::max(most, std::fabs(x));
-  return most;
-}
-
 /// Largest difference of a column over the largest value of the second.
 double difference(const Traced& a, const Traced& b, const std::string& column) {
   std::vector<double> gap = a[column];

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -53,5 +54,18 @@ struct Traced {
     return values;
   }
 };
+
+inline double largest_of(const std::vector<double>& values) {
+  double most = 0.;
+  for (const double x : values) most = std::max(most, std::fabs(x));
+  return most;
+}
+
+/// Largest difference of two columns over the largest value of the second.
+inline double relative_difference(const std::vector<double>& a, const std::vector<double>& b) {
+  double most = 0.;
+  for (std::size_t i = 0; i < a.size(); ++i) most = std::max(most, std::fabs(a[i] - b[i]));
+  return most / largest_of(b);
+}
 
 }  // namespace railstep

@@ -49,6 +49,7 @@ std::vector<HardCase> element_cases();
 std::vector<HardCase> input_cases();
 std::vector<HardCase> joint_cases();
 std::vector<HardCase> model_cases();
+std::vector<HardCase> profile_cases();
 std::vector<HardCase> stability_cases();
 std::vector<HardCase> step_cases();
 std::vector<HardCase> support_cases();

@@ -7,15 +7,31 @@
 #include "offline/contact/hertz.h"
 #include "offline/runner/suspension.h"
 #include "scene/scene_read.h"
+#include "section/running_profile.h"
 
 namespace railstep {
 namespace {
 
-/// The law of creep. Without coefficients the patch is that of Hertz.
+/// Hertz's ellipse under a cone.
+RollingPatch hertz_patch(const RollingContact& c, double radius, const BarScene& steel) {
+  constexpr double kLoad = 1e5;  // N: the ellipse has the same shape under every load
+  const HertzContact patch =
+      hertz_contact(radius, c.crown_radius, steel.young, steel.poisson, kLoad);
+  const double root = std::sqrt(std::pow(kLoad / c.hertz, 2. / 3.));
+  return {patch.half_along / root, patch.half_across / root,
+          steel.young / (2. * (1. + steel.poisson)), 1. / 3.,
+          kalker(patch.half_along / patch.half_across, steel.poisson)};
+}
+
+/// Profiles have patches of their own, which grow.
+RollingPatch patch_of_profiles(const BarScene& steel) {
+  return {1., 1., steel.young / (2. * (1. + steel.poisson)), 1., {}};
+}
+
+/// The law of creep. Without coefficients the patch follows from the contact.
 RollingCreep read_creep(const Table& t, const RollingContact& c, double radius,
                         const BarScene& steel) {
-  RollingCreep creep{CreepLaw::linear, 0, 0, {1., 1.}, 1., 1., 1., {}};
-  constexpr double kLoad = 1e5;  // N: the ellipse has the same shape under every load
+  RollingCreep creep{CreepLaw::linear, 0, {1., 1.}, {1., 1., 1., 0., {}}};
   const std::size_t law = t.choice("creep", {"none", "linear", "she", "fastsim", "polach"});
   if (law == 0) return creep;
   creep.law = CreepLaw{static_cast<std::int32_t>(law - 1)};
@@ -31,24 +47,15 @@ RollingCreep read_creep(const Table& t, const RollingContact& c, double radius,
                "this law of creep needs the patch, not its coefficients; expected no kalker, or "
                "creep = \"linear\" or \"she\"");
     const std::vector<double> f = t.numbers("kalker", between(0.0, 1e12), 4, 4);
-    creep.kalker = {f[0], f[1], f[2], f[3]};
+    creep.patch.kalker = {f[0], f[1], f[2], f[3]};
     return creep;
   }
-  const HertzContact patch =
-      hertz_contact(radius, c.crown_radius, steel.young, steel.poisson, kLoad);
-  const double root = std::sqrt(std::pow(kLoad / c.hertz, 2. / 3.));
-  creep.grows = 1;
-  creep.half_length = patch.half_along / root;
-  creep.half_width = patch.half_across / root;
-  creep.shear = steel.young / (2. * (1. + steel.poisson));
-  creep.kalker = kalker(patch.half_along / patch.half_across, steel.poisson);
+  creep.patch = has_profiles(c) ? patch_of_profiles(steel) : hertz_patch(c, radius, steel);
   return creep;
 }
 
-/// [contact]: wheels that are cones on crowns that are circles.
-RollingContact read_rolling(const Table& root, const Scene& scene, double radius) {
-  const Table t = root.table("contact");
-  static_cast<void>(t.choice("wheel", {"cone"}));
+/// Wheels that are cones on crowns that are circles.
+RollingContact read_cones(const Table& t, const Scene& scene, double radius) {
   static_cast<void>(t.choice("rail", {"crown"}));
   static_cast<void>(t.choice("normal", {"hertz"}));
   RollingContact c{};
@@ -58,8 +65,57 @@ RollingContact read_rolling(const Table& root, const Scene& scene, double radius
   c.hertz = t.has("hertz_n_per_m15")
                 ? t.number("hertz_n_per_m15", between(1e6, 1e14))
                 : hertz_constant(radius, c.crown_radius, scene.rail.young, scene.rail.poisson);
-  c.creep = read_creep(t, c, radius, scene.rail);
   return c;
+}
+
+double first_radius(const Runner& runner) {
+  for (const RunnerBody& body : runner.bodies)
+    if (body.is_wheelset()) return body.radius;
+  return kWheelRadius;
+}
+
+/// Weight on a wheel of a vehicle at rest, its mean over all, N.
+double mean_load(const Runner& runner) {
+  double mass = 0.;
+  int wheelsets = 0;
+  for (const RunnerBody& body : runner.bodies) {
+    mass += body.mass;
+    wheelsets += body.is_wheelset() ? 1 : 0;
+  }
+  return mass * kGravity / (2. * wheelsets);
+}
+
+/// Wheels and rails by their profiles.
+RollingProfiles read_profiles(const Table& t, const Scene& scene, const Runner& runner) {
+  static_cast<void>(t.choice("rail", {"profile"}));
+  static_cast<void>(t.choice("normal", {"strips"}));
+  const RailPlace place{t.slope("inclination", between(0.0, 0.2), scene.rail.cant),
+                        t.number("gauge_m", between(0.5, 2.0), 1.435)};
+  const double back_to_back = t.number("back_to_back_m", between(0.4, 1.9), 1.36);
+  const WheelProfile wheel = read_wheel_profile(t.path("wheel_profile"));
+  const PlacedRail rail = read_placed_rail(t.path("rail_profile"), place);
+  const WheelRail pair{wheel.growth, rail.surface, .5 * back_to_back - wheel.flange_back,
+                       first_radius(runner)};
+  try {
+    return rolling_profiles(pair, {scene.rail.young, scene.rail.poisson}, scene.rail.crown_radius,
+                            mean_load(runner));
+  } catch (const Refused& error) {
+    t.refuse("wheel_profile", error.id(), error.sentence());
+  }
+}
+
+/// [contact]
+void read_rolling(const Table& root, const Scene& scene, RailVehicle& vehicle) {
+  const Table t = root.table("contact");
+  const double radius = first_radius(vehicle.runner);
+  if (t.choice("wheel", {"cone", "profile"}) == 0) {
+    vehicle.contact = read_cones(t, scene, radius);
+  } else {
+    RollingProfiles profiles = read_profiles(t, scene, vehicle.runner);
+    vehicle.contact = profiles.contact;
+    vehicle.tables = std::move(profiles.tables);
+  }
+  vehicle.contact.creep = read_creep(t, vehicle.contact, radius, scene.rail);
 }
 
 Runner read_runner_of(const Table& t) {
@@ -77,12 +133,6 @@ Runner read_runner_of(const Table& t) {
     t.refuse(t.has("file") ? "file" : "element", error.id(), error.sentence());
   }
   return runner;
-}
-
-double first_radius(const Runner& runner) {
-  for (const RunnerBody& body : runner.bodies)
-    if (body.is_wheelset()) return body.radius;
-  return kWheelRadius;
 }
 
 /// [[vehicle.force]] along a motion of a body.
@@ -125,7 +175,7 @@ RailVehicleScene read_rail_vehicle(const Table& root, const Table& t, const Scen
   for (const RunnerElement& element : v.runner.elements)
     if (element.kind == RunnerElement::Kind::rod) v.rods.push_back(v.name + "." + element.name);
   for (const RunnerStop& stop : v.runner.stops) v.bump_stops.push_back(v.name + "." + stop.name);
-  v.contact = read_rolling(root, scene, first_radius(v.runner));
+  read_rolling(root, scene, v);
   v.start = t.number("start_m", between(-1e6, 1e6), 0.0);
   const SpeedScene speed = read_speed(t, std::nullopt);
   v.speed = speed.speed;

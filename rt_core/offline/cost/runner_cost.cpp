@@ -9,6 +9,9 @@ namespace {
 
 // One wheel on its rail: forces alone, and with their slopes.
 constexpr Cost kWheel = branching(600, 250), kWheelSlopes = branching(2600, 2600);
+// By profiles: where it touches, then forces of its patches alone and with their slopes.
+constexpr Cost kFind = branching(32000, 16000), kPatches = branching(7500, 4500),
+               kPatchesSlopes = branching(11000, 11000);
 
 /// One evaluation of a law of creep with its slopes, beyond linear creep.
 Cost creep_cost(const RollingCreep& creep) {
@@ -19,17 +22,36 @@ Cost creep_cost(const RollingCreep& creep) {
              : branching(800, 400);
 }
 
+/// All wheels of some runners: where they touch, their forces alone and with their slopes; the
+/// scalars of their laws, and the most of one.
+struct WheelsCost {
+  Cost find = {}, force = {}, slopes = {}, creep = {};
+  std::int64_t wheels = 0, ranks = 0, most = kWheelsetRank;
+};
+
+/// @param size  coordinates of a wheelset's law
+void add_wheels(const RunnerModel& runner, std::int64_t size, WheelsCost& sum) {
+  const bool drawn = has_profiles(runner.contact);
+  const std::int64_t wheels = 2LL * runner.wheelsets, ranks = wheelset_ranks(runner, size);
+  sum.wheels += wheels;
+  sum.ranks += ranks * runner.wheelsets;
+  if (ranks > sum.most) sum.most = ranks;
+  if (drawn) sum.find = sum.find + wheels * kFind;
+  sum.force = sum.force + wheels * (drawn ? kPatches : kWheel);
+  sum.slopes = sum.slopes + wheels * (drawn ? kPatchesSlopes : kWheelSlopes);
+  sum.creep = sum.creep + wheels * (drawn ? kMostZones : 1) * creep_cost(runner.contact.creep);
+}
+
 /// All wheels and scalar laws at the caps of Newton's iterations, and the matrices of these.
-/// @param creep  of all wheels, evaluated once
-Cost newton_cost(std::int64_t wheels, const Cost& creep, std::int64_t scalars, std::int64_t n) {
+Cost newton_cost(const WheelsCost& of, std::int64_t scalars, std::int64_t n) {
   constexpr std::int64_t trials = 3;  // of a step's parts
-  const std::int64_t ranks = scalars + kWheelsetRank * wheels / 2;
+  const Cost& creep = of.creep;
+  const std::int64_t ranks = scalars + of.ranks, rank = of.most;
   const Cost missed = work(2 * n * n + 8 * n, n * n + 6 * n);
   // Y B, then S Y B, then its elimination.
-  const Cost factor =
-      work(2 * kWheelsetRank * n * n + 2 * n * ranks + 2 * kMostLaw * ranks * ranks +
-               ranks * ranks * (2 * ranks / 3 + 4),
-           2 * kWheelsetRank * n * n + 2 * kMostLaw * ranks * ranks + ranks * ranks * ranks);
+  const Cost factor = work(2 * rank * n * n + 2 * n * ranks + 2 * kMostLaw * ranks * ranks +
+                               ranks * ranks * (2 * ranks / 3 + 4),
+                           2 * rank * n * n + 2 * kMostLaw * ranks * ranks + ranks * ranks * ranks);
   // One elimination's substitution, and one for each pass over the changes of slopes.
   constexpr std::int64_t solves = 1 + kChangePasses;
   const Cost step =
@@ -37,9 +59,8 @@ Cost newton_cost(std::int64_t wheels, const Cost& creep, std::int64_t scalars, s
            2 * kMostLaw * ranks + solves * (2 * ranks * ranks + 6 * ranks) + 2 * n * ranks);
   const Cost scalar = branching(40, 20);
   return (trials + 1) * kNewtonSweeps * (scalars * scalar + creep) + creep +
-         kNewtonSweeps * (trials * (wheels * kWheel + missed) + wheels * kWheelSlopes + missed +
-                          factor + step) +
-         wheels * kWheel + work(6 * n, 3 * n * n);
+         kNewtonSweeps * (trials * (of.force + missed) + of.slopes + missed + factor + step) +
+         of.find + of.force + work(6 * n, 3 * n * n);
 }
 
 }  // namespace
@@ -49,11 +70,9 @@ Cost runners_cost(const Model& model) {
   for (std::int32_t i = 0; i < model.runners; ++i) {
     const RunnerModel& own = model.runner[i];
     const std::int64_t n = own.size, meets = interface_size(own);
-    const Cost solved =
-        model.lines > 0
-            ? Cost{}
-            : newton_cost(2LL * own.wheelsets, 2LL * own.wheelsets * creep_cost(own.contact.creep),
-                          own.stops, meets);
+    WheelsCost wheels;
+    add_wheels(own, kMotions, wheels);
+    const Cost solved = model.lines > 0 ? Cost{} : newton_cost(wheels, own.stops, meets);
     const std::int64_t products = model.form == Form::condensed ? 3 : 2;
     const std::int64_t motions = kMotions * std::int64_t{own.wheelsets},
                        held = constraint_count(own);
@@ -71,14 +90,15 @@ Cost coupled_runners_cost(const Model& model) {
   const std::int64_t n = newton_size(model),
                      scalars = contact_count(model) + model.fixed.count + model.runner_stops;
   if (model.lines == 0 || n == 0) return {};
-  Cost seats{}, creep{};
+  Cost seats{};
+  WheelsCost wheels;
   for (std::int32_t i = 0; i < model.runners; ++i)
-    creep = creep + 2LL * model.runner[i].wheelsets * creep_cost(model.runner[i].contact.creep);
+    add_wheels(model.runner[i], kMotions + 2 * kWheelSeatRows, wheels);
   for (std::int32_t l = 0; l < model.lines; ++l) {
     const LineCost cost = line_cost(model, model.line[l]);
     seats = seats + 3 * cost.wheel_row + kPDeltaSeats * cost.node_roll;
   }
-  return newton_cost(2LL * model.runner_wheelsets, creep, scalars, n) + work(0, 4 * n * n) +
+  return newton_cost(wheels, scalars, n) + work(0, 4 * n * n) +
          wheel_seat_row_count(model) * (work(300, 150) + seats + port_count(model) * kPairLookUp) +
          wheel_seat_row_count(model) / kWheelSeatRows * 2 * (2 * kLookUp + work(60, 80));
 }

@@ -87,7 +87,7 @@ StoredEnergy EnergyAccount::stored(const Standing& at) const {
     const RunnerEnergy own = runner_energy(model_.runner[i], at.runners[i], at.state);
     sum.kinetic += own.kinetic;
     sum.strain += own.strain;
-    sum.hertz += own.hertz;
+    sum.hertz += own.contact;
     sum.residual += own.residual;
   }
   sum.residual += at.contacts.residual;
@@ -310,7 +310,7 @@ void EnergyAccount::add_start(const Standing& now) {
     for (std::int32_t l = 0; l < model_.lines && last_.contacts.contact[i].on_rail; ++l)
       spread(model_.line[l], last_.contacts.contact[i].row, -s.contact_force[i], f.data());
   for (std::size_t i = 0; i < last_.runners.size(); ++i)
-    add_seat_forces(model_, model_.runner[i], last_.runners[i], f.data());
+    add_seat_forces(model_, last_.runners[i], f.data());
   const FixedPortModel& fixed = model_.fixed;
   for (std::int32_t j = 0; j < fixed.count; ++j)
     for (std::int32_t k = fixed.start[j]; k < fixed.start[j + 1]; ++k)

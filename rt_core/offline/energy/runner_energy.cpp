@@ -82,20 +82,44 @@ double stop_energy(const RunnerModel& runner, const BodiesVector& u) {
   return sum;
 }
 
-double hertz_energy(const StandingRunner& standing) {
+/// Work of the normal force of a patch up to a depth, by Simpson's rule, if at each depth it is
+/// held as a step that finds it there does.
+double work_of(StripPatch patch, double depth) {
+  constexpr int kParts = 64;
+  constexpr double kLeastHeld = 3e-6;  // m
   double sum = 0.;
-  for (const auto& wheelset : standing.wheels)
-    for (const StandingWheel& wheel : wheelset)
-      sum += .4 * wheel.force.normal * std::max(wheel.force.depth, 0.);
+  for (int i = 1; i <= kParts; ++i) {
+    const double own = depth * i / kParts;
+    patch.hold = hold_of(patch, std::max(own, kLeastHeld));
+    sum += (i == kParts ? 1. : i % 2 == 1 ? 4. : 2.) * patch_force(patch, own).normal;
+  }
+  return sum * depth / (3. * kParts);
+}
+
+/// Energy of the patches of a wheel, J.
+double strain_of(const RollingContact& c, double radius, double side, const OverRail& at,
+                 const WheelForce& force) {
+  if (!has_profiles(c)) return .4 * force.normal * std::max(force.depth, 0.);
+  ProfileWheel wheel;
+  find_profile_wheel(c, radius, side, at, wheel);
+  double sum = 0.;
+  for (std::int32_t i = 0; i < wheel.patches; ++i)
+    sum += work_of(patch_of(wheel.patch[i].zone), std::max(wheel.patch[i].rows.depth, 0.));
   return sum;
 }
 
-double residual_energy(const RunnerModel& runner, const StandingRunner& standing) {
+double contact_energy(const StandingRunner& standing) {
+  double sum = 0.;
+  for (const auto& wheelset : standing.wheels)
+    for (const StandingWheel& wheel : wheelset) sum += wheel.strain;
+  return sum;
+}
+
+double residual_energy(const StandingRunner& standing) {
   double sum = 0.;
   for (const auto& wheelset : standing.wheels)
     for (const StandingWheel& wheel : wheelset)
-      for (int k = 0; k < kWheelSeatRows; ++k)
-        sum += .5 * wheel.on_seat(runner.contact, k) * wheel.residual[k];
+      for (int k = 0; k < kWheelSeatRows; ++k) sum += .5 * wheel.on_seat(k) * wheel.residual[k];
   return sum;
 }
 
@@ -123,7 +147,7 @@ ContactWork contact_work(const Model& model, const RunnerModel& r, const Standin
       sum.creep -= .5 * dt * (a.force.creep_power + b.force.creep_power);
       if (!a.seat[0].on_rail || !b.seat[0].on_rail) continue;
       for (int k = 0; k < kWheelSeatRows; ++k) {
-        const double f0 = a.on_seat(r.contact, k), f1 = b.on_seat(r.contact, k);
+        const double f0 = a.on_seat(k), f1 = b.on_seat(k);
         sum.on_seats += .5 * (f0 + f1) * (b.moved[k] - a.moved[k]);
         sum.on_lines += .5 * (f0 * along(model, a.seat[k], lines_moved) +
                               f1 * along(model, b.seat[k], lines_moved));
@@ -153,6 +177,22 @@ void add_spin_work(const Model& model, const RunnerModel& r, const StandingRunne
   }
 }
 
+/// Rates of the lines' material, [unknowns] each. On condensed lines they are those of modes
+/// without the part of the forces, which does not move the rails.
+struct LineRates {
+  std::vector<double> real, imaginary;
+};
+LineRates line_rates(const Model& model, const State& at) {
+  const auto n = static_cast<std::size_t>(model.unknowns);
+  LineRates rates{std::vector<double>(n), std::vector<double>(n)};
+  for (std::int32_t l = 0; l < model.lines && model.form == Form::condensed; ++l) {
+    const LineModel& line = model.line[l];
+    modes_multiply(line.modal.rate, {at.u + line.first, at.v + line.first},
+                   rates.real.data() + line.first, rates.imaginary.data() + line.first, line.size);
+  }
+  return rates;
+}
+
 }  // namespace
 
 StandingRunner standing_runner(const Model& model, const RunnerModel& runner, const State& at) {
@@ -160,6 +200,8 @@ StandingRunner standing_runner(const Model& model, const RunnerModel& runner, co
   const double time = static_cast<double>(at.steps) * model.scheme.dt;
   standing.speed = travelled(runner.travel, time).speed;
   const std::vector<RailForce> acting = wheel_forces_on_rails(model, at);
+  const LineRates rates = line_rates(model, at);
+  const Configuration moving{at.v, {rates.real.data(), rates.imaginary.data()}};
   for (int i = 0; i < runner.wheelsets; ++i) {
     RailsUnder slope;
     const RailsUnder uneven = rails_under(model, runner, i, at.steps, 0., &slope);
@@ -176,9 +218,18 @@ StandingRunner standing_runner(const Model& model, const RunnerModel& runner, co
       RailRate rate{0., 0., 0.};
       if (wheel.seat[0].on_rail && keeps_seats(model))
         rate = rail_rate(seat_motion_of(at, runner.first_wheelset + i, side));
+      else if (wheel.seat[0].on_rail)
+        rate = {along(model, wheel.seat[0], moving), along(model, wheel.seat[1], moving),
+                along(model, wheel.seat[2], moving)};
       rate.z += standing.speed * slope.z[side];
+      under.roll[side] = wheel.moved[2];
+      double over[kMotions];
+      place_over_rail(under, side, at.u + first, over);
+      const OverRail place{over, under.roll[side]};
+      const double radius = runner.wheelset[i].radius, sign = side == 0 ? 1. : -1.;
       wheel.force =
-          wheel_force(runner, i, under, rate, side, standing.speed, at.u + first, at.v + first);
+          force_on_wheel(runner.contact, radius, sign, standing.speed, place, at.v + first, rate);
+      wheel.strain = strain_of(runner.contact, radius, sign, place, wheel.force);
     }
   }
   return standing;
@@ -194,7 +245,7 @@ RunnerEnergy runner_energy(const RunnerModel& runner, const StandingRunner& stan
     own.kinetic += set.spin_inertia * roll * (beyond + .5 * roll);
   }
   return {own.kinetic, own.strain + stop_energy(runner, part_of(runner, at.u)),
-          hertz_energy(standing), residual_energy(runner, standing)};
+          contact_energy(standing), residual_energy(standing)};
 }
 
 RunnerWork runner_work(const Model& model, const RunnerModel& runner, const StandingRunner& before,
@@ -208,10 +259,10 @@ RunnerWork runner_work(const Model& model, const RunnerModel& runner, const Stan
   const Eigen::VectorXd du = part_of(runner, lines_u.data());
   const ContactWork contact = contact_work(model, runner, before, after, du,
                                            {lines_u.data(), {lines_u.data(), lines_v.data()}});
-  const double residual = residual_energy(runner, after) - residual_energy(runner, before);
+  const double residual = residual_energy(after) - residual_energy(before);
   RunnerWork work{suspended_work(model, runner, from, to), contact.drive, contact.creep};
   work.loss += (contact.on_bodies + contact.on_seats) +
-               (hertz_energy(after) - hertz_energy(before)) + contact.creep - contact.drive;
+               (contact_energy(after) - contact_energy(before)) + contact.creep - contact.drive;
   const BodiesVector u0 = part_of(runner, from.u), u1 = part_of(runner, to.u);
   work.loss += .5 * (stop_forces(runner, u0) + stop_forces(runner, u1)).dot(du) +
                (stop_energy(runner, u1) - stop_energy(runner, u0));
@@ -231,13 +282,12 @@ double runner_unbalanced(const Model& model, const RunnerModel& runner,
   return suspended_unbalanced(model, runner, force, at, after);
 }
 
-void add_seat_forces(const Model& model, const RunnerModel& runner, const StandingRunner& standing,
-                     double* force) {
+void add_seat_forces(const Model& model, const StandingRunner& standing, double* force) {
   for (const auto& wheelset : standing.wheels)
     for (const StandingWheel& wheel : wheelset)
       for (int k = 0; k < kWheelSeatRows && wheel.seat[0].on_rail; ++k)
         for (std::int32_t l = 0; l < model.lines; ++l)
-          spread(model.line[l], wheel.seat[k].row, wheel.on_seat(runner.contact, k), force);
+          spread(model.line[l], wheel.seat[k].row, wheel.on_seat(k), force);
 }
 
 }  // namespace railstep

@@ -11,14 +11,13 @@ namespace railstep {
 /// A wheel of a rail vehicle on its rail in a state.
 struct StandingWheel {
   WheelForce force;
+  double strain;                      // energy of its patches, J
   WheelSeatRow seat[kWheelSeatRows];  // rows of the rail under it; not on_rail on rigid rails
   double moved[kWheelSeatRows];       // of the seat, with its residual displacement, m, m, rad
   double residual[kWheelSeatRows];    // residual displacements alone
   double uneven_y, uneven_z;          // of the unloaded rail, m
   /// Force on the seat along row k, N, N m.
-  double on_seat(const RollingContact& contact, int k) const {
-    return k == 2 ? contact.crown_radius * force.across : -force.generalised[1 + k];
-  }
+  double on_seat(int k) const { return k == 2 ? force.on_section : -force.generalised[1 + k]; }
 };
 
 /// A rail vehicle in a state, with the forces of the rails on its wheels.
@@ -26,14 +25,14 @@ struct StandingRunner {
   double speed;                                      // m/s
   std::vector<std::array<StandingWheel, 2>> wheels;  // [wheelsets][left, right]
 };
-/// The rates of the rails count as 0 on condensed lines.
+/// The rates of the rails leave out those of residual flexibility on condensed lines.
 StandingRunner standing_runner(const Model& model, const RunnerModel& runner, const State& at);
 
 /// Energy of a rail vehicle in a state, J: of its bodies over the frames that move along the track,
-/// spins in full; of its springs, with the geometric stiffness that its preloads make; of its Hertz
+/// spins in full; of its springs, with the geometric stiffness that its preloads make; of its
 /// contacts; of the residual flexibility under its wheels.
 struct RunnerEnergy {
-  double kinetic, strain, hertz, residual;
+  double kinetic, strain, contact, residual;
 };
 RunnerEnergy runner_energy(const RunnerModel& runner, const StandingRunner& standing,
                            const State& at);
@@ -54,7 +53,6 @@ double runner_unbalanced(const Model& model, const RunnerModel& runner,
                          const StandingRunner& standing, const State& at, const State& after);
 
 /// Adds the forces on the seats to those on the unknowns of banded lines.
-void add_seat_forces(const Model& model, const RunnerModel& runner, const StandingRunner& standing,
-                     double* force);
+void add_seat_forces(const Model& model, const StandingRunner& standing, double* force);
 
 }  // namespace railstep

@@ -8,6 +8,7 @@
 #include "offline/condense/reduction.h"
 #include "offline/irregularity/spline.h"
 #include "offline/math/constants.h"
+#include "offline/runner/rolling_profiles.h"
 #include "offline/runner/running.h"
 #include "offline/track/fixed_port.h"
 #include "offline/vehicle/vehicle.h"
@@ -92,9 +93,10 @@ struct RunningVehicle {
 struct RailVehicle {
   Runner runner = {};
   RollingContact contact = {};
-  double start = 0., speed = 0.;    // of its origin, m, m/s
-  std::vector<double> speeds = {};  // t (s), m/s, ...; empty: `speed`
-  double gravity = kGravity;        // m/s2
+  std::shared_ptr<const ContactTables> tables = nullptr;  // to which its profiles point
+  double start = 0., speed = 0.;                          // of its origin, m, m/s
+  std::vector<double> speeds = {};                        // t (s), m/s, ...; empty: `speed`
+  double gravity = kGravity;                              // m/s2
   std::vector<OuterForce> forces = {};
 };
 
@@ -285,6 +287,8 @@ class PackedModel {
   void add_vehicle(const Track& track, const RunningVehicle& vehicle,
                    const std::array<Railhead, 2>& heads);
   void add_runner(const Track& track, const RailVehicle& vehicle);
+  /// Takes the tables that a pair points to into the model's own memory.
+  void keep_profiles(ProfilePair& pair);
   /// @param body  "wheelset" or "vehicle", for messages
   SuspendedResponse add_suspended(const SuspendedMatrices& m, const std::vector<OuterForce>& forces,
                                   SuspendedModel& packed, const char* body = "vehicle");

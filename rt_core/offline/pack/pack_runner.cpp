@@ -110,6 +110,16 @@ RunnerMatrices loaded_matrices(const RailVehicle& vehicle) {
   return matrices;
 }
 
+void PackedModel::keep_profiles(ProfilePair& pair) {
+  const auto keep_all = [this](const double*& values, std::ptrdiff_t count) {
+    if (count > 0) values = keep(std::vector<double>(values, values + count));
+  };
+  for (ProfileTable* table : {&pair.wheel, &pair.rail})
+    keep_all(table->coefficient, 4 * std::ptrdiff_t{table->points});
+  for (const double** places : {&pair.search_place, &pair.search_growth, &pair.search_slope})
+    keep_all(*places, pair.wheel.points > 0 ? kSearchStrips : 0);
+}
+
 void PackedModel::add_runner(const Track& track, const RailVehicle& vehicle) {
   if (track.rails != 2)
     refuse("E-PACK-52", "a rail vehicle in space runs on one rail; expected a track of two");
@@ -135,6 +145,7 @@ void PackedModel::add_runner(const Track& track, const RailVehicle& vehicle) {
   packed.start = model_.lines > 0 ? model_.endless.origin + vehicle.start : vehicle.start;
   packed.travel = keep_travel(vehicle.speed, vehicle.speeds);
   packed.contact = vehicle.contact;
+  keep_profiles(packed.contact.profiles.pair);
   SuspendedResponse step = add_suspended(m, vehicle.forces, packed);
   const Eigen::MatrixXd stops = stop_rows(matrices, n);
   const Eigen::MatrixXd compliance =

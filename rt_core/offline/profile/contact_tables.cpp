@@ -63,7 +63,7 @@ ContactTables::ContactTables(const WheelRail& pair, const Elastic& bodies)
   }
 }
 
-WheelOnRail ContactTables::pair() const {
+ProfilePair ContactTables::pair() const {
   return {wheel_.table(),
           search_place_.data(),
           search_growth_.data(),

@@ -12,7 +12,7 @@ class ContactTables {
   /// Points of both profiles are 0.125 mm apart or a little less.
   ContactTables(const WheelRail& pair, const Elastic& bodies);
   /// Valid as long as the tables live.
-  [[nodiscard]] WheelOnRail pair() const;
+  [[nodiscard]] ProfilePair pair() const;
 
  private:
   struct Tabled {

@@ -126,21 +126,26 @@ class Loading {
   [[nodiscard]] WheelPatch patch(double deepest, double from, double to, double upwards) const {
     const WheelTouch touch = wheel_.touch_at(deepest);
     const double lowest = wheel_.distance(deepest);
-    const double cosine = std::cos(touch.angle);          // along the wheel's profile
-    const double normal = std::cos(touch.angle + roll_);  // of the normal to the upright
     // Strips to both sides of the deepest point, of a width that covers the overlap.
     const double step = (to - from) / (kStrips - 2);
     const int before = static_cast<int>((deepest - from) / step) + 1;
     double gap[kStrips];
     for (int i = 0; i < kStrips; ++i) {
       const double place = deepest + (i - before) * step;
-      gap[i] = place < from || place > to
-                   ? 1.  // beyond the overlap, or in the next patch
-                   : std::max(normal * (wheel_.distance(place) - lowest), 0.);
+      gap[i] = place < from || place > to ? 1.  // beyond the overlap, or in the next patch
+                                          : std::max(wheel_.distance(place) - lowest, 0.);
     }
+    StripPatch strips{gap, kStrips, 1. * before, {}, step, 1., modulus_};
+    strips.hold = hold_of(strips, upwards);
+    const WheelTouch mean =
+        wheel_.touch_at(deepest + step * (.5 * (strips.hold.first + strips.hold.second) - before));
+    const double cosine = std::cos(mean.angle);          // along the wheel's profile
+    const double normal = std::cos(mean.angle + roll_);  // of the normal to the upright
+    for (double& own : gap) own *= normal;
+    strips.hold.gap *= normal;
+    strips.width /= cosine;
+    strips.radius = (radius_ + mean.growth) / cosine;
     const double approach = normal * upwards;
-    const StripPatch strips{
-        gap, kStrips, before, step / cosine, (radius_ + touch.growth) / cosine, modulus_};
     const PatchForce force = patch_force(strips, approach);
     return {touch, approach, normal * force.normal, force,
             wheel_.touch_at(deepest + cosine * force.centre)};

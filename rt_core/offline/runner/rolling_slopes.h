@@ -1,17 +1,19 @@
 #pragma once
-#include "online/runner/rolling_contact.h"
+#include "online/runner/runner_contact.h"
 
 namespace railstep {
 
-/// Derivatives of WheelForce::generalised, and of its force across as a seventh row, over kPlaced,
-/// the rates of the motions, and slip across that none of these makes.
+/// Derivatives of WheelForce::generalised, and of its moment on the rail's section as a seventh
+/// row, over kPlaced, the rates of the motions, the section's roll and its rate.
 struct WheelSlopes {
-  double by_motion[7][4], by_rate[7][6], by_across[7];
+  double by_motion[7][4], by_rate[7][6], by_section[7], by_section_rate[7];
 };
 
-/// wheel_force() with all derivatives. @param side  1 of the left wheel, -1 of the right
-/// @param u, v  [6] motions of the wheelset over rails that stand still, and their rates
-WheelForce wheel_force(const RollingContact& c, double radius, double side, double speed,
-                       const double* u, const double* v, WheelSlopes& slopes);
+/// force_on_wheel() with all derivatives on rails that stand still: exact ones of cones; of
+/// profiles differences to both sides, with all that moves along the profiles.
+/// @param side  1 of the left wheel, -1 of the right
+/// @param v     [6] rates of the wheelset's motions
+WheelForce force_on_wheel(const RollingContact& c, double radius, double side, double speed,
+                          const OverRail& at, const double* v, WheelSlopes& slopes);
 
 }  // namespace railstep

@@ -28,11 +28,10 @@ void add_wheelset(const RollingContact& contact, double radius, double speed,
                   Contacts& sum) {
   for (const int side : {0, 1}) {
     WheelSlopes slopes;
-    Eigen::Matrix<double, kMotions, 1> over_rail = u.segment<kMotions>(first);
-    over_rail[index_of(BodyMotion::y)] -= rails.y[side];
-    over_rail[index_of(BodyMotion::z)] -= rails.z[side];
-    const WheelForce f = wheel_force(contact, radius, side == 0 ? 1. : -1., speed, over_rail.data(),
-                                     v.data() + first, slopes);
+    double over_rail[kMotions];
+    place_over_rail(rails, side, u.data() + first, over_rail);
+    const WheelForce f = force_on_wheel(contact, radius, side == 0 ? 1. : -1., speed,
+                                        {over_rail, rails.roll[side]}, v.data() + first, slopes);
     for (int k = 0; k < kMotions; ++k) {
       sum.force[first + k] += f.generalised[k];
       for (int j = 0; j < 4; ++j)
@@ -172,19 +171,19 @@ namespace {
 /// Adds the derivatives of one wheel's force over the motions of the seat under it, and those of
 /// the force on the seat.
 /// @param first, seat  coordinates of the wheelset and of the seat
-void add_seat(const WheelSlopes& slopes, double crown_radius, Index first, Index seat,
-              LinearRunning& linear) {
+void add_seat(const WheelSlopes& slopes, Index first, Index seat, LinearRunning& linear) {
   // Over y, z and roll of the seat; the wheel's place counts over the rail.
   const auto add = [&](Index row, int k, double factor) {
     for (int j = 0; j < 2; ++j) {
       linear.stiffness(row, seat + j) += factor * slopes.by_motion[k][j];
       linear.damping(row, seat + j) += factor * slopes.by_rate[k][1 + j];
     }
-    linear.damping(row, seat + 2) -= factor * crown_radius * slopes.by_across[k];
+    linear.stiffness(row, seat + 2) -= factor * slopes.by_section[k];
+    linear.damping(row, seat + 2) -= factor * slopes.by_section_rate[k];
   };
   for (int k = 0; k < kMotions; ++k) add(first + k, k, 1.);
-  constexpr int kForces[3] = {1, 2, 6};  // along y and z, and across
-  const double factor[3] = {-1., -1., crown_radius};
+  constexpr int kForces[3] = {1, 2, 6};  // along y and z, and the moment on the section
+  constexpr double factor[3] = {-1., -1., 1.};
   for (int d = 0; d < 3; ++d) {
     add(seat + d, kForces[d], factor[d]);
     for (int j = 0; j < 4; ++j)
@@ -229,13 +228,13 @@ void add_track(const Runner& runner, const RollingContact& contact, double speed
     if (!runner.bodies[b].is_wheelset()) continue;
     const RailsUnder under = on.rails.empty() ? RailsUnder{} : on.rails[set++];
     for (const int side : {0, 1}) {
-      Eigen::Matrix<double, kMotions, 1> u = steady.displacement.segment<kMotions>(first_of(b));
-      u[index_of(BodyMotion::y)] -= under.y[side];
-      u[index_of(BodyMotion::z)] -= under.z[side];
+      double u[kMotions];
+      place_over_rail(under, side, steady.displacement.data() + first_of(b), u);
       WheelSlopes slopes;
-      static_cast<void>(wheel_force(contact, runner.bodies[b].radius, side == 0 ? 1. : -1., speed,
-                                    u.data(), steady.rate.data() + first_of(b), slopes));
-      add_seat(slopes, contact.crown_radius, first_of(b), seat, linear);
+      static_cast<void>(force_on_wheel(contact, runner.bodies[b].radius, side == 0 ? 1. : -1.,
+                                       speed, {u, under.roll[side]},
+                                       steady.rate.data() + first_of(b), slopes));
+      add_seat(slopes, first_of(b), seat, linear);
       seat += 3;
     }
   }
@@ -276,12 +275,12 @@ std::vector<std::array<WheelForce, 2>> wheel_forces(const Runner& runner,
     if (!runner.bodies[b].is_wheelset()) continue;
     const RailsUnder under = rails.empty() ? RailsUnder{} : rails[all.size()];
     std::array<WheelForce, 2> wheels;
-    for (const std::size_t side : {0u, 1u}) {
-      Eigen::Matrix<double, kMotions, 1> u = steady.displacement.segment<kMotions>(first_of(b));
-      u[index_of(BodyMotion::y)] -= under.y[side];
-      u[index_of(BodyMotion::z)] -= under.z[side];
-      wheels[side] = wheel_force(contact, runner.bodies[b].radius, side == 0 ? 1. : -1., speed,
-                                 u.data(), steady.rate.data() + first_of(b), {});
+    for (const int side : {0, 1}) {
+      double u[kMotions];
+      place_over_rail(under, side, steady.displacement.data() + first_of(b), u);
+      wheels[static_cast<std::size_t>(side)] =
+          force_on_wheel(contact, runner.bodies[b].radius, side == 0 ? 1. : -1., speed,
+                         {u, under.roll[side]}, steady.rate.data() + first_of(b), RailRate{});
     }
     all.push_back(wheels);
   }

@@ -288,11 +288,8 @@ namespace {
 void put_runners(const PackedModel& packed, const SettledRunners& now, const SettledRunners& before,
                  const SettledRunners& later, double span, State& state) {
   const Model& model = packed.model();
-  std::vector<double> crown;  // radius under each wheelset, m
   for (std::size_t r = 0; r < now.steady.size(); ++r) {
     const std::int32_t first = model.runner[r].first;
-    crown.insert(crown.end(), static_cast<std::size_t>(model.runner[r].wheelsets),
-                 model.runner[r].contact.crown_radius);
     const Eigen::VectorXd& u = now.steady[r].displacement;
     const Eigen::VectorXd v =
         now.steady[r].rate + (later.steady[r].displacement - before.steady[r].displacement) / span;
@@ -314,9 +311,8 @@ void put_runners(const PackedModel& packed, const SettledRunners& now, const Set
   }
   for (std::size_t set = 0; set < now.wheels.size(); ++set)
     for (const std::size_t side : {0u, 1u})
-      keep_wheel_force(
-          now.wheels[set][side], crown[set],
-          wheel_force_of(state, static_cast<std::int32_t>(set), static_cast<std::int32_t>(side)));
+      keep_wheel_force(now.wheels[set][side], wheel_force_of(state, static_cast<std::int32_t>(set),
+                                                             static_cast<std::int32_t>(side)));
 }
 
 }  // namespace

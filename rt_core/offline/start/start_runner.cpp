@@ -120,7 +120,7 @@ void add_forces(const PackedModel& packed, const SettledRunners& runners, const 
             runners.wheels[set + static_cast<std::size_t>(i)][static_cast<std::size_t>(side)];
         acting.contacts.push_back({seat.row[0].row, -f.generalised[1]});
         acting.contacts.push_back({seat.row[1].row, -f.generalised[2]});
-        acting.contacts.push_back({seat.row[2].row, runner.contact.crown_radius * f.across});
+        acting.contacts.push_back({seat.row[2].row, f.on_section});
         RailForce place = seat.place[1];
         place.force = -f.generalised[2];
         acting.ports.push_back(place);
@@ -168,10 +168,10 @@ SettledRunners settle_runners(const PackedModel& packed, const SettledRunners& p
         const std::int32_t of_all = runner.first_wheelset + i;
         const auto set = static_cast<std::size_t>(of_all);
         double force[kWheelForces];
-        keep_wheel_force(pressing.wheels[set][static_cast<std::size_t>(side)],
-                         runner.contact.crown_radius, force);
+        keep_wheel_force(pressing.wheels[set][static_cast<std::size_t>(side)], force);
         const SeatFlexibility gives = seat_flexibility_beside(model, runner, side, seat.place[1]);
         under.y[side] += moved_by(model, seat.row[0], at) + moved_by_wheel(gives.along[0], force);
+        under.roll[side] = moved_by(model, seat.row[2], at) + moved_by_wheel(gives.along[2], force);
         under.z[side] +=
             moved_by(model, seat.row[1], at) + moved_by_wheel(gives.along[1], force) +
             residual_displacement(model, acting.ports.data(), static_cast<int>(acting.ports.size()),

@@ -217,6 +217,8 @@ void couple_runners(const Model& model, const Stage& stage, State& s, Workspace&
     const double place = element_place(model, runner, i, stage.step, stage.before + stage.span);
     const bool enters = !(place >= 0. && place <= model.elements * model.element_length);
     couple_seats(model, s, c, runner, set, slope, enters, all);
+    if (has_profiles(runner.contact)) law.profile = profile_wheels(w, set);
+    law.find_contacts(all.motion + first);
   });
 }
 
@@ -240,7 +242,7 @@ NewtonResult solve_coupled_runners(const Model& model, const Workspace& w, Coupl
     if (c.force[port] > 0. || law.bilateral) z[i] = port_depth(law, c.force[port]);
   }
   for (int i = 0; i < sets; ++i)
-    block[all.scalars + i] = {all.scalars + kOfWheelset * i, kOfWheelset, kWheelsetRank};
+    block[all.scalars + i] = {all.scalars + kOfWheelset * i, kOfWheelset, all.law[i].rank()};
   for (int i = 0; i < model.runner_stops; ++i)
     block[all.scalars + sets + i] = {first_stop(model, all.scalars) + i, 1, 1};
   const NewtonResult met = solve_laws(
@@ -258,7 +260,7 @@ NewtonResult solve_coupled_runners(const Model& model, const Workspace& w, Coupl
       },
       all.force, z);
   // The last point that was tried need not be the best one.
-  double steep[kWheelsetRank];
+  double steep[kMostLaw];
   for (int i = 0; i < sets && met.status != NewtonStatus::converged; ++i) {
     const int first = all.scalars + kOfWheelset * i;
     all.law[i].evaluate(z + first, all.force + first, nullptr, steep);

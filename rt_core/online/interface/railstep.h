@@ -57,8 +57,10 @@ enum {
   RAILSTEP_NONFINITE_INPUT = 128,   /* an input was not finite: its last good value was held */
   RAILSTEP_FORCE_SATURATED = 256,   /* an input was beyond its limit, and cut to it */
   RAILSTEP_CONTACT_ILL_POSED =
-      512,                  /* compliances of contacts that are not positive or not finite */
-  RAILSTEP_FULL_SLIP = 1024 /* the creep of a wheel has saturated */
+      512,                   /* compliances of contacts that are not positive or not finite */
+  RAILSTEP_FULL_SLIP = 1024, /* the creep of a wheel has saturated */
+  RAILSTEP_BEYOND_PROFILE =
+      2048 /* a wheel touches at the end of a profile, or is beside its rail */
 };
 
 /* RAILSTEP_VERSION of the library. */

@@ -211,6 +211,27 @@ void describe(Archive& a, ContactModel& c, const Model& m) {
 }
 
 template <typename Archive>
+void describe(Archive& a, ProfileTable& t) {
+  a.count(t.points, kMostProfilePoints);
+  a.real(t.first);
+  a.real(t.per_step);
+  a.reals(t.coefficient, 4 * std::int64_t{t.points});
+}
+
+template <typename Archive>
+void describe(Archive& a, ProfileContact& c) {
+  ProfilePair& pair = c.pair;
+  describe(a, pair.wheel);
+  describe(a, pair.rail);
+  const std::int64_t places = pair.wheel.points > 0 ? kSearchStrips : 0;
+  for (const double** of : {&pair.search_place, &pair.search_growth, &pair.search_slope})
+    a.reals(*of, places);
+  for (double* x : {&pair.half_distance, &pair.radius, &pair.modulus, &c.height, &c.point_y,
+                    &c.point_z, &c.poisson})
+    a.real(*x);
+}
+
+template <typename Archive>
 void describe(Archive& a, RollingContact& c) {
   for (double* x : {&c.slope, &c.half_distance, &c.crown_radius, &c.hertz}) a.real(*x);
   RollingCreep& creep = c.creep;
@@ -218,11 +239,12 @@ void describe(Archive& a, RollingContact& c) {
   a.count(law, static_cast<std::int32_t>(CreepLaw::polach));
   creep.law = static_cast<CreepLaw>(law);
   a.count(creep.strips, kMostStrips);
-  a.count(creep.grows, 1);
+  RollingPatch& patch = creep.patch;
   for (double* x :
-       {&creep.friction[0], &creep.friction[1], &creep.half_length, &creep.half_width, &creep.shear,
-        &creep.kalker.c11, &creep.kalker.c22, &creep.kalker.c23, &creep.kalker.c33})
+       {&creep.friction[0], &creep.friction[1], &patch.half_length, &patch.half_width, &patch.shear,
+        &patch.growth, &patch.kalker.c11, &patch.kalker.c22, &patch.kalker.c23, &patch.kalker.c33})
     a.real(*x);
+  describe(a, c.profiles);
 }
 
 template <typename Archive>

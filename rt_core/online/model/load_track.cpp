@@ -24,6 +24,11 @@ bool are_above_zero(const double* values, std::int64_t n) noexcept {
   return true;
 }
 
+bool are_finite(const double* values, std::int64_t n) noexcept {
+  bool finite = true;
+  for (std::int64_t i = 0; i < n; ++i) finite = finite && std::isfinite(values[i]);
+  return finite;
+}
 bool are_not_negative(const double* values, std::int64_t n) noexcept {
   for (std::int64_t i = 0; i < n; ++i)
     if (!(values[i] >= 0.)) return false;
@@ -138,14 +143,32 @@ bool vehicle_is_valid(const Model& m, const SuspendedModel& v) noexcept {
 }
 
 bool creep_is_valid(const RollingCreep& c) noexcept {
-  const double coefficients[] = {c.kalker.c11, c.kalker.c22, c.kalker.c23, c.kalker.c33};
-  return are_not_negative(coefficients, 4) && are_above_zero(c.friction, 2) && c.half_length > 0. &&
-         c.half_width > 0. && c.shear > 0. && (c.law != CreepLaw::fastsim || c.strips > 0);
+  const RollingPatch& p = c.patch;
+  const double coefficients[] = {p.kalker.c11, p.kalker.c22, p.kalker.c23, p.kalker.c33, p.growth};
+  return are_not_negative(coefficients, 5) && are_above_zero(c.friction, 2) && p.half_length > 0. &&
+         p.half_width > 0. && p.shear > 0. && (c.law != CreepLaw::fastsim || c.strips > 0);
+}
+
+bool profile_is_valid(const ProfileTable& t) noexcept {
+  return t.points >= 2 && t.per_step > 0. && t.coefficient &&
+         are_finite(t.coefficient, 4 * std::int64_t{t.points});
+}
+
+bool profiles_are_valid(const ProfileContact& c) noexcept {
+  const ProfilePair& pair = c.pair;
+  for (const double* places : {pair.search_place, pair.search_growth, pair.search_slope})
+    if (!places || !are_finite(places, kSearchStrips)) return false;
+  for (int i = 1; i < kSearchStrips; ++i)
+    if (!(pair.search_place[i] > pair.search_place[i - 1])) return false;
+  return profile_is_valid(pair.wheel) && profile_is_valid(pair.rail) && pair.half_distance > 0. &&
+         pair.radius > 0. && pair.modulus > 0. && c.poisson >= 0.;
 }
 
 bool contact_is_valid(const RollingContact& c) noexcept {
-  return c.hertz > 0. && c.crown_radius > 0. && c.half_distance > 0. && c.slope >= 0. &&
-         creep_is_valid(c.creep);
+  const bool drawn = has_profiles(c);
+  return c.hertz > 0. && (drawn ? c.crown_radius == 0. : c.crown_radius > 0.) &&
+         c.half_distance > 0. && c.slope >= 0. && creep_is_valid(c.creep) &&
+         (!drawn || profiles_are_valid(c.profiles));
 }
 
 bool stops_are_valid(const RunnerModel& r, std::int32_t first_stop) noexcept {

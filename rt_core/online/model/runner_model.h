@@ -4,6 +4,7 @@
 #include "online/model/suspended_model.h"
 #include "online/patch/creep_law.h"
 #include "online/patch/kalker.h"
+#include "online/patch/wheel_zones.h"
 
 namespace railstep {
 
@@ -14,28 +15,47 @@ enum class BodyMotion { x, y, z, roll, pitch, yaw };
 inline constexpr int kMotions = 6;
 constexpr int index_of(BodyMotion motion) noexcept { return static_cast<int>(motion); }
 
-/// Creep of wheels on rails: a law, and the patch under a wheel. By Hertz's law a patch grows as
-/// the root of the penetration; coefficients of creep that are given instead hold for every force,
-/// as if the patch kept its size.
-struct RollingCreep {
-  CreepLaw law;
-  std::int32_t strips;             // of FASTSIM
-  std::int32_t grows;              // 1: the patch grows with the force, 0: it keeps its size
-  double friction[2];              // coefficients of the left and of the right rail
+/// A patch under a wheel as creep sees it. It grows as the root of the penetration; coefficients of
+/// creep that are given instead hold for every force, as if the patch kept its size.
+struct RollingPatch {
   double half_length, half_width;  // along the rail and across, m; if it grows, m^0.5 of root depth
   double shear;                    // modulus, N/m2
+  double growth;  // power of the normal force by which it grows: 1/3 by Hertz, 0: it keeps its
+                  // size; of profiles any above 0, as it follows from the patch
   Kalker kalker;
 };
 
-/// Conical treads on the circular crowns of straight rails: Hertz's law along the normal, and a law
-/// of creep.
-struct RollingContact {
-  double slope;          // of the treads, tangent of the cone's half angle
-  double half_distance;  // between the contacts of a centred wheelset, m
-  double crown_radius;   // m
-  double hertz;          // N/m^1.5
-  RollingCreep creep;
+/// Creep of wheels on rails.
+struct RollingCreep {
+  CreepLaw law;
+  std::int32_t strips;  // of FASTSIM
+  double friction[2];   // coefficients of the left and of the right rail
+  RollingPatch patch;   // of profiles: only if its size is given
 };
+
+/// Profiles of both wheels of a wheelset and of both rails, alike.
+struct ProfileContact {
+  ProfilePair pair;  // its wheel has no points where treads are cones
+  double height;     // of a centred wheelset's middle over the top of rail as it just touches, m
+  /// The point from which a rail is placed, the highest one of its crown's circle: outwards from
+  /// the middle of the track and over the top of rail, m.
+  double point_y, point_z;
+  double poisson;  // of both bodies
+};
+
+/// Wheels on straight rails: the law along the normal, and a law of creep. Without profiles treads
+/// are cones on circular crowns.
+struct RollingContact {
+  double slope;          // of the treads, tangent of the cone's half angle; 0 with profiles
+  double half_distance;  // between the contacts of a centred wheelset, m
+  double crown_radius;   // m; 0 with profiles
+  double hertz;          // N/m^1.5; with profiles that of the static load, to start from
+  RollingCreep creep;
+  ProfileContact profiles;
+};
+inline bool has_profiles(const RollingContact& c) noexcept {
+  return c.profiles.pair.wheel.points > 0;
+}
 
 /// A bump stop: a spring beyond a gap against and along its axis.
 struct StopModel {

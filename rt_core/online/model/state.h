@@ -56,23 +56,39 @@ inline std::int32_t newton_size(const Model& model) noexcept {
     if (interface_size(model.runner[i]) > most) most = interface_size(model.runner[i]);
   return most;
 }
+/// Most scalars of the law of a wheelset, of `size` coordinates: patches of profiles come and go.
+inline std::int64_t wheelset_ranks(const RunnerModel& runner, std::int64_t size) noexcept {
+  return has_profiles(runner.contact) ? size : kWheelsetRank;
+}
 /// Numbers of Newton's method: Y of a track, and its scratch.
 inline std::int64_t newton_doubles(const Model& model) noexcept {
-  constexpr std::int64_t ranks = kWheelsetRank;
   const std::int64_t n = newton_size(model), sets = model.runner_wheelsets;
   if (model.lines > 0) {
-    const std::int64_t scalars = n - (kMotions + 2 * kWheelSeatRows) * sets;
-    return n * n + newton_scratch(n, scalars + ranks * sets,
-                                  scalars + ranks * (kMotions + 2 * kWheelSeatRows) * sets);
+    constexpr std::int64_t size = kMotions + 2 * kWheelSeatRows;
+    const std::int64_t scalars = n - size * sets;
+    std::int64_t ranks = 0;
+    for (std::int32_t i = 0; i < model.runners; ++i)
+      ranks += wheelset_ranks(model.runner[i], size) * model.runner[i].wheelsets;
+    return n * n + newton_scratch(n, scalars + ranks, scalars + ranks * size);
   }
   std::int64_t most = 0;
   for (std::int32_t i = 0; i < model.runners; ++i) {
     const RunnerModel& r = model.runner[i];
-    const std::int64_t own = newton_scratch(interface_size(r), ranks * r.wheelsets + r.stops,
-                                            ranks * kMotions * r.wheelsets + r.stops);
+    const std::int64_t ranks = wheelset_ranks(r, kMotions) * r.wheelsets;
+    const std::int64_t own =
+        newton_scratch(interface_size(r), ranks + r.stops, ranks * kMotions + r.stops);
     if (own > most) most = own;
   }
   return most;
+}
+/// Numbers that hold where a wheel touches by its profile, a ProfileWheel (profile_contact.h).
+inline constexpr std::int64_t kProfileWheelDoubles = 216;
+/// Those of all wheels of rail vehicles; 0 where all treads are cones.
+inline std::int64_t profile_doubles(const Model& model) noexcept {
+  bool any = false;
+  for (std::int32_t i = 0; i < model.runners; ++i)
+    any = any || has_profiles(model.runner[i].contact);
+  return any ? 2 * kProfileWheelDoubles * model.runner_wheelsets : 0;
 }
 /// Whether unit responses of the lines are kept: not of condensed ones with tables.
 inline bool has_units(const Model& model) noexcept {
@@ -114,6 +130,7 @@ struct Workspace {
   double* compliance;  // [ports][ports] of the coupled solve, m/N
   double* newton;      // newton_doubles()
   double* beside;      // beside_doubles()
+  double* profile;     // profile_doubles()
 };
 
 /// Value of an input; 0 if there is no state yet.
@@ -220,7 +237,7 @@ inline std::int64_t workspace_doubles(const Model& model) noexcept {
   const std::int64_t of_modes = model.form == Form::condensed ? 1 + 2 * rows : 0;
   const std::int64_t units = has_units(model) ? 2 * rows : 0;
   return (4 + units + of_modes) * model.unknowns + system_workspace_doubles(model.system) +
-         ports * ports + newton_doubles(model) + beside_doubles(model) +
+         ports * ports + newton_doubles(model) + beside_doubles(model) + profile_doubles(model) +
          (model.external_wheels > 0 ? state_doubles(model) : 0) +
          (model.scheme.stage_fraction > 0. ? 2LL * model.unknowns : 0);
 }
@@ -265,7 +282,8 @@ inline Workspace workspace_on(const Model& model, double* memory) noexcept {
   double* const compliance = system + system_workspace_doubles(model.system);
   double* const of_newton = compliance + ports * ports;
   double* const beside = of_newton + newton_doubles(model);
-  double* const external = beside + beside_doubles(model);
+  double* const profile = beside + beside_doubles(model);
+  double* const external = profile + profile_doubles(model);
   return {memory,
           memory + n,
           memory + 2 * n,
@@ -279,7 +297,8 @@ inline Workspace workspace_on(const Model& model, double* memory) noexcept {
           unit + units,
           compliance,
           of_newton,
-          beside};
+          beside,
+          profile};
 }
 
 /// Copies a state to other memory, without the latched status.

@@ -17,6 +17,7 @@ enum class Status : std::uint32_t {
   force_saturated = 1u << 8,     // an input was beyond its limit, and cut to it
   contact_ill_posed = 1u << 9,   // compliances of contacts that are impossible
   full_slip = 1u << 10,          // the creep of a wheel has saturated
+  beyond_profile = 1u << 11,     // a wheel touches at the end of a profile, or is beside its rail
 };
 
 constexpr Status operator|(Status a, Status b) noexcept {
@@ -62,6 +63,10 @@ inline constexpr StatusText kStatusTexts[] = {
      "the creep of a wheel has saturated: friction limits its force, and more creep does not "
      "change "
      "it"},
+    {Status::beyond_profile, "beyond_profile",
+     "a wheel touches its rail at the end of a profile, or is beside it, and forces are not right: "
+     "give "
+     "profiles that reach farther"},
     {Status::nonfinite_state, "nonfinite_state", "the state is no longer finite"},
 };
 

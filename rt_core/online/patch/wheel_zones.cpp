@@ -9,6 +9,7 @@ namespace {
 constexpr double kBeside = 1.;      // m, gap beside the rail
 constexpr double kReach = 1e-3;     // m: higher minima are not near contact
 constexpr double kAllowance = 1.3;  // of a depth, to which a step may press a zone
+constexpr double kLeastHold = .1;   // of the least depth: some strips overlap
 constexpr int kMostMinima = 8;
 constexpr int kFineStrips = 17;  // over the strips to both sides of a minimum
 constexpr int kEdgeStrips = 8;   // between two strips at the edge of a zone
@@ -19,7 +20,8 @@ struct TableValue {
 
 /// Intervals of a table and places in them, side by side. Places beyond the ends are taken there.
 struct Cubics {
-  double c0[kZoneStrips], c1[kZoneStrips], c2[kZoneStrips], c3[kZoneStrips], x[kZoneStrips];
+  static constexpr int kMost = kZoneStrips + 1;
+  double c0[kMost], c1[kMost], c2[kMost], c3[kMost], x[kMost];
 
   void find(const ProfileTable& t, const double* place, int n) noexcept {
     const double last = t.points - 2;
@@ -37,6 +39,12 @@ struct Cubics {
   /// Over the distance of two points.
   double slope(int i) const noexcept { return c1[i] + x[i] * (2. * c2[i] + 3. * c3[i] * x[i]); }
 };
+
+TableValue value_at(const ProfileTable& table, double place) noexcept {
+  Cubics cubics;
+  cubics.find(table, &place, 1);
+  return {cubics.value(0), table.per_step * cubics.slope(0)};
+}
 
 /// A point in the rail's frame.
 struct FramePoint {
@@ -58,9 +66,13 @@ struct Lowest {
     return {ahead - level * yaw, outwards + level * yaw_cosine + ahead * yaw,
             up + along * roll_sine - down * roll_cosine};
   }
+  /// The wheel's surface falls as its radius grows, and turns with the roll.
+  double slope_in_frame(double growth_slope) const noexcept {
+    return (roll_sine - growth_slope * roll_cosine) / (roll_cosine + growth_slope * roll_sine);
+  }
 };
 
-Lowest lowest(const WheelOnRail& pair, const WheelsetPlace& at) noexcept {
+Lowest lowest(const ProfilePair& pair, const WheelsetPlace& at) noexcept {
   return {pair.half_distance,
           pair.radius,
           at.outwards,
@@ -73,17 +85,17 @@ Lowest lowest(const WheelOnRail& pair, const WheelsetPlace& at) noexcept {
 
 /// The line of these points over the rail.
 struct LowestLine {
-  const WheelOnRail& pair;
+  const ProfilePair& pair;
   Lowest wheel;
 
-  /// Gaps at places on the wheel. @param n  at most kZoneStrips
+  /// Gaps at places on the wheel. @param n  at most Cubics::kMost
   void gaps(const double* s, int n, double* gap) const noexcept {
     const ProfileTable& rail = pair.rail;
     const Lowest own = wheel;  // by itself, so that loops need not look at it again
     const double per_step = pair.wheel.per_step, rail_per_step = rail.per_step;
     const double begin = rail.first, end = begin + (rail.points - 1) / rail_per_step;
     Cubics cubics;
-    double y[kZoneStrips], z[kZoneStrips];
+    double y[Cubics::kMost], z[Cubics::kMost];
     cubics.find(pair.wheel, s, n);
 #pragma omp simd
     for (int i = 0; i < n; ++i) {
@@ -98,11 +110,7 @@ struct LowestLine {
       gap[i] = over ? z[i] - cubics.value(i) : kBeside;
     }
   }
-  TableValue wheel_at(double s) const noexcept {
-    Cubics cubics;
-    cubics.find(pair.wheel, &s, 1);
-    return {cubics.value(0), pair.wheel.per_step * cubics.slope(0)};
-  }
+  TableValue wheel_at(double s) const noexcept { return value_at(pair.wheel, s); }
 };
 
 /// Gaps at the search's strips.
@@ -223,19 +231,40 @@ struct Edges {
 };
 Edges edges_of(const LowestLine& line, const Search& search, int a, int b, double level,
                double place) noexcept {
-  constexpr int n = kEdgeStrips;
+  constexpr int n = kEdgeStrips, points = n + 1;
   const double left_step = (search.place[a + 1] - search.place[a]) / n,
                right_step = (search.place[b] - search.place[b - 1]) / n;
-  double s[2 * n], gap[2 * n];
-  for (int k = 0; k < n; ++k) {
+  double s[2 * points], gap[2 * points];
+  for (int k = 0; k < points; ++k) {
     s[k] = search.place[a] + k * left_step;
-    s[n + k] = search.place[b] - k * right_step;
+    s[points + k] = search.place[b] - k * right_step;
   }
-  line.gaps(s, 2 * n, gap);
-  int left = 0, right = 0;
+  line.gaps(s, 2 * points, gap);
+  int left = 0, right = points;
   while (left + 1 < n && !(gap[left + 1] < level) && s[left + 1] < place) ++left;
-  while (right + 1 < n && !(gap[n + right + 1] < level) && s[n + right + 1] > place) ++right;
-  return {s[left], s[n + right]};
+  while (right + 1 < points + n && !(gap[right + 1] < level) && s[right + 1] > place) ++right;
+  // The edge is where a straight line through two places meets the level.
+  const auto crossing = [&](int outer) noexcept -> double {
+    const double fall = gap[outer] - gap[outer + 1], above = gap[outer] - level;
+    if (!(fall > 0.)) return 0.;
+    return above > fall ? 1. : above < -fall ? -1. : above / fall;
+  };
+  const double from = s[left] + crossing(left) * left_step,
+               to = s[right] - crossing(right) * right_step;
+  return {from < place ? from : s[left], to > place ? to : s[right]};
+}
+
+/// Turns a zone whose gaps are upright to the plane in which it is pressed, that of the mean place
+/// of its hold: the deepest point leaps where the bodies are alike, as throat and gauge corner are.
+void take_plane(const LowestLine& line, double place, WheelZone& zone) noexcept {
+  const TableValue wheel = line.wheel_at(place);
+  const double slope = line.wheel.slope_in_frame(wheel.slope);
+  zone.cosine = 1. / square_root(1. + slope * slope);
+  zone.cosine_of_wheel = 1. / square_root(1. + wheel.slope * wheel.slope);
+  for (double& gap : zone.gap) gap *= zone.cosine;
+  zone.patch.hold.gap *= zone.cosine;
+  zone.patch.width /= zone.cosine_of_wheel;
+  zone.patch.radius = (line.pair.radius + wheel.value) / zone.cosine_of_wheel;
 }
 
 void fill_zone(const LowestLine& line, const Search& search, const Minimum& own, double least_depth,
@@ -247,48 +276,33 @@ void fill_zone(const LowestLine& line, const Search& search, const Minimum& own,
   while (b < own.last && search.gap[b] < level) ++b;
   const Edges edges = edges_of(line, search, a, b, level, own.place);
   const double width = (edges.to - edges.from) / (kZoneStrips - 1);
-  const double strips_before = (own.place - edges.from) / width;
-  int deepest = static_cast<int>(strips_before);
-  if (strips_before - deepest > .5) ++deepest;
-  double s[kZoneStrips], gap[kZoneStrips];
-  for (int k = 0; k < kZoneStrips; ++k) s[k] = own.place + (k - deepest) * width;
-  line.gaps(s, kZoneStrips, gap);
-  const double least = gap[deepest];
-  const TableValue own_wheel = line.wheel_at(own.place);
-  const FramePoint point = line.wheel.point(own.place, own_wheel.value, own_wheel.slope);
-  const double along = 1. / square_root(1. + own_wheel.slope * own_wheel.slope);
-  // The wheel's surface falls as its radius grows, and turns with the roll.
-  zone.slope = (line.wheel.roll_sine - own_wheel.slope * line.wheel.roll_cosine) /
-               (line.wheel.roll_cosine + own_wheel.slope * line.wheel.roll_sine);
-  const double normal = 1. / square_root(1. + zone.slope * zone.slope);
-  zone.depth = -normal * least;
+  double s[kZoneStrips + 1], gap[kZoneStrips + 1];
+  for (int k = 0; k < kZoneStrips; ++k) s[k] = edges.from + k * width;
+  s[kZoneStrips] = own.place;
+  line.gaps(s, kZoneStrips + 1, gap);
+  const double least = gap[kZoneStrips];
+  for (int k = 0; k < kZoneStrips; ++k) zone.gap[k] = gap[k] > least ? gap[k] - least : 0.;
+  zone.patch = {zone.gap, kZoneStrips,      (own.place - edges.from) / width, {}, width,
+                0.,       line.pair.modulus};
+  const double least_hold = kLeastHold * least_depth;
+  zone.patch.hold = hold_of(zone.patch, -least > least_hold ? -least : least_hold);
+  take_plane(line, edges.from + .5 * width * (zone.patch.hold.first + zone.patch.hold.second),
+             zone);
+  zone.depth = -zone.cosine * least;
   zone.s = own.place;
-  zone.ahead = point.x;
-  zone.y = point.y;
-  zone.z = point.z;
-  zone.cosine_of_wheel = along;
   const double overlap = kVirtualPart * zone.depth;
-  for (int k = 0; k < kZoneStrips; ++k) {
-    const double above = normal * (gap[k] - least);
-    zone.gap[k] = above > 0. ? above : 0.;
-  }
   zone.at_edge = (a == 0 && zone.gap[0] < overlap) ||
                  (b == kSearchStrips - 1 && zone.gap[kZoneStrips - 1] < overlap);
   for (int k = 1; k < kZoneStrips; ++k) {
     const bool beside = gap[k - 1] >= kBeside, next = gap[k] >= kBeside;
     if (beside != next && zone.gap[beside ? k : k - 1] < overlap) zone.at_edge = true;
   }
-  zone.patch = {nullptr,
-                kZoneStrips,
-                deepest,
-                width / along,
-                (line.pair.radius + own_wheel.value) / along,
-                line.pair.modulus};
+  zone.patch.gap = nullptr;
 }
 
 }  // namespace
 
-int find_zones(const WheelOnRail& pair, const WheelsetPlace& at, double least_depth,
+int find_zones(const ProfilePair& pair, const WheelsetPlace& at, double least_depth,
                WheelZone* zone) noexcept {
   const LowestLine line{pair, lowest(pair, at)};
   Search search;
@@ -297,6 +311,14 @@ int find_zones(const WheelOnRail& pair, const WheelsetPlace& at, double least_de
   const int count = leave_deepest(found, find_minima(line, search, least_depth, found));
   for (int i = 0; i < count; ++i) fill_zone(line, search, found[i], least_depth, zone[i]);
   return count;
+}
+
+PressedPoint pressed_point(const ProfilePair& pair, const WheelsetPlace& at, double s) noexcept {
+  const Lowest wheel = lowest(pair, at);
+  const TableValue own = value_at(pair.wheel, s);
+  const FramePoint point = wheel.point(s, own.value, own.slope);
+  const double of_rail = value_at(pair.rail, point.y).slope;
+  return {point.x, point.y, point.z, .5 * (wheel.slope_in_frame(own.slope) + of_rail)};
 }
 
 }  // namespace railstep

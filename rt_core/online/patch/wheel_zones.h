@@ -5,16 +5,18 @@
 
 namespace railstep {
 
+inline constexpr int kMostProfilePoints = 20000;
+
 /// A profile as a table over equally spaced points: in the interval from point i on it is
 ///   c0 + x (c1 + x (c2 + x c3)),  x = (place - first) per_step - i.
 struct ProfileTable {
-  std::int32_t points;        // at least 2
+  std::int32_t points;        // 2 to kMostProfilePoints
   double first, per_step;     // m; points a metre
   const double* coefficient;  // [points][4] m; of the last point the first one alone counts
 };
 
 /// A wheel and its rail, both seen as the right ones: y outwards, z up.
-struct WheelOnRail {
+struct ProfilePair {
   ProfileTable wheel;  // growth of the radius over s, outwards from the tread datum
   // The same at places as far apart along the profile, from end to end.
   const double *search_place, *search_growth, *search_slope;  // [kSearchStrips] m, m, 1
@@ -38,11 +40,9 @@ inline constexpr int kMostZones = 3;       // of a wheel: tread, throat and flan
 /// Where a wheel and its rail overlap, or are next to do so.
 struct WheelZone {
   double depth;            // at the deepest point, along the normal, m; negative: free
-  double slope;            // of the contact plane in the rail's frame, dz/dy
-  double ahead;            // of the contact before the wheelset's middle, m
-  double y, z;             // of the deepest point in the rail's frame, m
   double s;                // of the deepest point on the wheel, m
-  double cosine_of_wheel;  // of the angle between the wheel's profile and its axle
+  double cosine;           // of the angle between the contact plane and the rail's level
+  double cosine_of_wheel;  // of the angle between the wheel's profile there and its axle
   bool at_edge;            // the overlap reaches the end of a profile
   double gap[kZoneStrips];
   StripPatch patch;  // without its gaps; see patch_of()
@@ -63,7 +63,15 @@ inline StripPatch patch_of(const WheelZone& zone) noexcept {
 /// @param least_depth  upright, m: zones of less depth are looked at as if they were that deep
 /// @param zone  [kMostZones] out
 /// @returns how many zones there are: one at least where the wheel is above its rail, 0 beside it
-int find_zones(const WheelOnRail& pair, const WheelsetPlace& at, double least_depth,
+int find_zones(const ProfilePair& pair, const WheelsetPlace& at, double least_depth,
                WheelZone* zone) noexcept;
+
+/// A point at which a wheel is pressed, in the rail's frame.
+struct PressedPoint {
+  double ahead, y, z;  // m, as WheelZone's
+  double slope;        // mean of the wheel's and of the rail's there, dz/dy
+};
+/// The wheel's point at s, as far before the axle as one that touches.
+PressedPoint pressed_point(const ProfilePair& pair, const WheelsetPlace& at, double s) noexcept;
 
 }  // namespace railstep

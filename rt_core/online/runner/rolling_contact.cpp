@@ -2,24 +2,8 @@
 
 namespace railstep {
 
-namespace {
-
-WheelRows<double> values(const WheelRows<Placed>& r) noexcept {
-  return {r.depth.value,       r.n_y.value,         r.n_z.value,        r.normal_roll.value,
-          r.normal_yaw.value,  r.along_roll.value,  r.along_spin.value, r.along_yaw.value,
-          r.across_roll.value, r.across_spin.value, r.across_yaw.value, r.spin_roll.value,
-          r.spin_spin.value};
-}
-
-/// Derivatives of a creep force over kPlaced.
-double by_motion(const Slip<Placed>& slip, const Placed& normal, const double* by_slip,
-                 double by_normal, int m) noexcept {
-  return (by_slip[0] * slip.along.slope[m] + by_slip[1] * slip.across.slope[m]) +
-         (by_slip[2] * slip.spin.slope[m] + by_normal * normal.slope[m]);
-}
-
-void find_slopes(const WheelRows<double>& r, const Slip<Placed>& slip, const Placed& normal,
-                 const ContactCreep& creep, ContactSlopes& slopes) noexcept {
+void fill_rates_and_spread(const WheelRows<double>& r, const ContactCreep& creep,
+                           ContactSlopes& slopes) noexcept {
   const double pressed[6] = {0., r.n_y, r.n_z, r.normal_roll, 0., r.normal_yaw};
   const double along[6] = {1., 0., 0., r.along_roll, r.along_spin, r.along_yaw};
   const double across[6] = {0., r.n_z, -r.n_y, r.across_roll, r.across_spin, r.across_yaw};
@@ -33,13 +17,38 @@ void find_slopes(const WheelRows<double>& r, const Slip<Placed>& slip, const Pla
     slopes.spread[k][1] = along[k];
     slopes.spread[k][2] = across[k];
   }
-  slopes.by_across[0] = 0.;
-  slopes.by_across[1] = x[1];
-  slopes.by_across[2] = y[1];
+  const double section[3] = {-r.normal_section, 0., r.across_section};
+  const double turned[3] = {0., x[1] * r.across_section, y[1] * r.across_section};
+  for (int k = 0; k < 3; ++k) {
+    slopes.section[k] = section[k];
+    slopes.by_section_rate[k] = turned[k];
+  }
+}
+
+namespace {
+
+WheelRows<double> values(const WheelRows<Placed>& r) noexcept {
+  return {r.depth.value,       r.n_y.value,         r.n_z.value,        r.normal_roll.value,
+          r.normal_yaw.value,  r.along_roll.value,  r.along_spin.value, r.along_yaw.value,
+          r.across_roll.value, r.across_spin.value, r.across_yaw.value, r.spin_roll.value,
+          r.spin_spin.value,   r.normal_section,    r.across_section};
+}
+
+/// Derivatives of a creep force over kPlaced.
+double by_motion(const Slip<Placed>& slip, const Placed& normal, const double* by_slip,
+                 double by_normal, int m) noexcept {
+  return (by_slip[0] * slip.along.slope[m] + by_slip[1] * slip.across.slope[m]) +
+         (by_slip[2] * slip.spin.slope[m] + by_normal * normal.slope[m]);
+}
+
+void find_slopes(const WheelRows<double>& r, const Slip<Placed>& slip, const Placed& normal,
+                 const ContactCreep& creep, ContactSlopes& slopes) noexcept {
+  fill_rates_and_spread(r, creep, slopes);
+  for (double& by : slopes.by_section) by = 0.;
   for (int m = 0; m < 4; ++m) {
     slopes.by_motion[0][m] = normal.slope[m];
-    slopes.by_motion[1][m] = by_motion(slip, normal, x, creep.by_normal[0], m);
-    slopes.by_motion[2][m] = by_motion(slip, normal, y, creep.by_normal[1], m);
+    for (int k = 0; k < 2; ++k)
+      slopes.by_motion[1 + k][m] = by_motion(slip, normal, creep.by_slip[k], creep.by_normal[k], m);
   }
 }
 
@@ -56,11 +65,11 @@ WheelForce wheel_force(const RollingContact& c, double radius, double side, doub
     slopes = {};
     return {r.depth, 0., 0., {}, 0., false};
   }
-  const Slip<Placed> slip = slip_of(c, placed, v, speed, radius, rail);
+  const Slip<Placed> slip = slip_of(placed, v, speed, radius, rail);
   const Slip<double> slips{slip.along.value, slip.across.value, slip.spin.value};
   const Placed normal = normal_force(c, placed.depth);
-  const ContactCreep creep =
-      contact_creep(c.creep, friction_of(c.creep, side), r.depth, normal.value, slips, speed);
+  const ContactCreep creep = contact_creep(c.creep, c.creep.patch, friction_of(c.creep, side),
+                                           {r.depth, normal.value}, slips, speed);
   find_slopes(r, slip, normal, creep, slopes);
   return wheel_force(r, normal.value, slips, creep);
 }

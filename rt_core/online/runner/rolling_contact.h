@@ -44,31 +44,39 @@ CosineSine<Dual<n>> turned(const Dual<n>& angle) noexcept {
   return {dual::chain(at.cosine, -at.sine, angle), dual::chain(at.sine, at.cosine, angle)};
 }
 
-/// A cone about the axle of a wheelset that yaws and then rolls, and the crown's centre line, which
-/// runs along x.
+/// The axle of a wheelset that yaws and then rolls.
+template <typename T>
+struct Axle {
+  T ahead_x, ahead_y;  // axis across it that does not roll, level
+  Vector<T> along;
+
+  Axle(const T& roll, const T& yaw) noexcept {
+    const CosineSine<T> r = turned(roll), h = turned(yaw);
+    ahead_x = h.cosine;
+    ahead_y = h.sine;
+    along = {-(h.sine * r.cosine), h.cosine * r.cosine, r.sine};
+  }
+};
+
+/// A cone about the axle of a wheelset, and the crown's centre line, which runs along x.
 template <typename T>
 struct ConeOnCrown {
   const RollingContact& c;
   double radius, side;  // side: 1 of the left wheel, -1 of the right
   double cosine, sine;  // of the cone's half angle
   T y, z;               // from the wheelset's centre to the line
-  T ahead_x, ahead_y;   // axis that does not roll, level
-  Vector<T> axle;
+  const Vector<T>& axle;
 
   ConeOnCrown(const RollingContact& contact, double wheel_radius, double of_side, const T& u_y,
-              const T& u_z, const T& roll, const T& yaw) noexcept
+              const T& u_z, const Vector<T>& of_axle) noexcept
       : c(contact),
         radius(wheel_radius),
         side(of_side),
         cosine(1. / std::sqrt(1. + c.slope * c.slope)),
         sine(c.slope * cosine),
         y(side * (c.half_distance + c.crown_radius * sine) - u_y),
-        z((-c.crown_radius * cosine - radius) - u_z) {
-    const CosineSine<T> r = turned(roll), h = turned(yaw);
-    ahead_x = h.cosine;
-    ahead_y = h.sine;
-    axle = {-(h.sine * r.cosine), h.cosine * r.cosine, r.sine};
-  }
+        z((-c.crown_radius * cosine - radius) - u_z),
+        axle(of_axle) {}
 
   /// A point of the line, from the wheelset's centre: its part along the axle and across it.
   struct Point {
@@ -107,38 +115,53 @@ struct WheelRows {
   T along_roll, along_spin, along_yaw;
   T across_roll, across_spin, across_yaw;
   T spin_roll, spin_spin;  // of the moment; n_z about z
+  /// The same two forces on the rail, about the point of its section from which it is placed: the
+  /// centre of its crown, or with profiles its top. Negative.
+  double normal_section, across_section;
 };
 
+/// Fills rows whose normal is known.
+/// @param arm  from the wheelset's centre to the contact
+template <typename T>
+void fill_rows(const tread_contact::Axle<T>& of, const tread_contact::Vector<T>& arm,
+               WheelRows<T>& rows) noexcept {
+  const auto& axle = of.along;
+  // Motion of the contact by a unit of roll and of spin.
+  const T rolled_x = of.ahead_y * arm.z, rolled_y = -(of.ahead_x * arm.z),
+          rolled_z = of.ahead_x * arm.y - of.ahead_y * arm.x;
+  const T spun_y = axle.z * arm.x - axle.x * arm.z, spun_z = axle.x * arm.y - axle.y * arm.x;
+  rows.normal_roll = rows.n_y * rolled_y + rows.n_z * rolled_z;
+  rows.normal_yaw = rows.n_y * arm.x;
+  rows.along_roll = rolled_x;
+  rows.along_spin = axle.y * arm.z - axle.z * arm.y;
+  rows.along_yaw = -arm.y;
+  rows.across_roll = rows.n_z * rolled_y - rows.n_y * rolled_z;
+  rows.across_spin = rows.n_z * spun_y - rows.n_y * spun_z;
+  rows.across_yaw = rows.n_z * arm.x;
+  rows.spin_roll = rows.n_y * of.ahead_y;
+  rows.spin_spin = rows.n_y * axle.y + rows.n_z * axle.z;
+}
+
+/// Treads that are cones.
 /// @param side  1 of the left wheel, -1 of the right
 /// Other parameters: motions of the wheelset over the rail.
 template <typename T>
 WheelRows<T> wheel_rows(const RollingContact& c, double radius, double side, const T& y, const T& z,
                         const T& roll, const T& yaw) noexcept {
-  const tread_contact::ConeOnCrown<T> pair(c, radius, side, y, z, roll, yaw);
+  const tread_contact::Axle<T> of(roll, yaw);
+  const auto& axle = of.along;
+  const tread_contact::ConeOnCrown<T> pair(c, radius, side, y, z, axle);
   const auto p = pair.point(pair.nearest());
-  const auto& axle = pair.axle;
   WheelRows<T> rows;
   const T wheel = (radius + c.slope * c.half_distance) - (side * c.slope) * p.along;
   rows.depth = c.crown_radius - pair.cosine * (p.far - wheel);
   const T outwards = -pair.cosine / p.far;
   rows.n_y = outwards * p.across.y - (side * pair.sine) * axle.y;
   rows.n_z = outwards * p.across.z - (side * pair.sine) * axle.z;
-  // The contact, from the wheelset's centre.
-  const T arm_y = pair.y + c.crown_radius * rows.n_y, arm_z = pair.z + c.crown_radius * rows.n_z;
-  // Motion of the contact by a unit of roll and of spin.
-  const T rolled_x = pair.ahead_y * arm_z, rolled_y = -(pair.ahead_x * arm_z),
-          rolled_z = pair.ahead_x * arm_y - pair.ahead_y * p.x;
-  const T spun_y = axle.z * p.x - axle.x * arm_z, spun_z = axle.x * arm_y - axle.y * p.x;
-  rows.normal_roll = rows.n_y * rolled_y + rows.n_z * rolled_z;
-  rows.normal_yaw = rows.n_y * p.x;
-  rows.along_roll = rolled_x;
-  rows.along_spin = axle.y * arm_z - axle.z * arm_y;
-  rows.along_yaw = -arm_y;
-  rows.across_roll = rows.n_z * rolled_y - rows.n_y * rolled_z;
-  rows.across_spin = rows.n_z * spun_y - rows.n_y * spun_z;
-  rows.across_yaw = rows.n_z * p.x;
-  rows.spin_roll = rows.n_y * pair.ahead_y;
-  rows.spin_spin = rows.n_y * axle.y + rows.n_z * axle.z;
+  fill_rows(of, {p.x, pair.y + c.crown_radius * rows.n_y, pair.z + c.crown_radius * rows.n_z},
+            rows);
+  rows.normal_section = 0.;
+  rows.across_section = c.crown_radius;
   return rows;
 }
 
@@ -148,8 +171,8 @@ struct ContactForces {
   T normal, along, across, moment;
 };
 
-/// How a rail moves under a wheel, m/s and rad/s: the centre of its crown along y and z, and its
-/// section about x.
+/// How a rail moves under a wheel, m/s and rad/s: the point from which it is placed along y and z,
+/// and its section about x.
 struct RailRate {
   double y, z, roll;
 };
@@ -158,13 +181,12 @@ struct RailRate {
 /// @param v      [6] rates of the wheelset's motions
 /// @param speed  of the wheelset's frame, m/s
 template <typename T>
-Slip<T> slip_of(const RollingContact& c, const WheelRows<T>& r, const double* v, double speed,
-                double radius, const RailRate& rail) noexcept {
+Slip<T> slip_of(const WheelRows<T>& r, const double* v, double speed, double radius,
+                const RailRate& rail) noexcept {
   const double spin = speed / radius + v[4];
-  // The contact is a crown's radius from the centre of the crown, along the normal.
   return {(speed + v[0]) + r.along_roll * v[3] + r.along_spin * spin + r.along_yaw * v[5],
           r.n_z * (v[1] - rail.y) - r.n_y * (v[2] - rail.z) + r.across_roll * v[3] +
-              r.across_spin * spin + r.across_yaw * v[5] + c.crown_radius * rail.roll,
+              r.across_spin * spin + r.across_yaw * v[5] + r.across_section * rail.roll,
           r.spin_roll * v[3] + r.spin_spin * spin + r.n_z * v[5]};
 }
 
@@ -193,32 +215,47 @@ void generalise(const WheelRows<T>& r, const ContactForces<T>& f, T* force) noex
       f.normal * r.normal_yaw + f.along * r.along_yaw + f.across * r.across_yaw + f.moment * r.n_z;
 }
 
-/// Deviation of both railheads from straight, level lines under a wheelset, m: [left, right].
+/// Deviation of both railheads from straight, level lines under a wheelset, m, and roll of their
+/// sections, rad: [left, right].
 struct RailsUnder {
-  double y[2], z[2];
+  double y[2], z[2], roll[2];
 };
+/// The motions of a wheelset over one of its rails. @param over  [6] out
+inline void place_over_rail(const RailsUnder& rails, int side, const double* u,
+                            double* over) noexcept {
+  for (int k = 0; k < 6; ++k) over[k] = u[k];
+  over[index_of(BodyMotion::y)] -= rails.y[side];
+  over[index_of(BodyMotion::z)] -= rails.z[side];
+}
 
 /// Force of the rail on a wheel.
 struct WheelForce {
   double depth;           // penetration, m; forces are 0 unless it is above 0
-  double normal, across;  // N; across: of creep
+  double normal;          // N
+  double on_section;      // moment on the rail's section, N m
   double generalised[6];  // over the wheelset's motions, N and N m; the first three are x, y, z
   double creep_power;     // W; of linear creep not above 0
   bool slides;            // ContactCreep::slides
 };
 
 /// Derivatives of the normal force and of the creep forces along and across, over kPlaced, over the
-/// rates of the motions, and over slip across that none of these makes.
+/// rates of the motions, and over the roll of the rail's section and its rate.
 struct ContactSlopes {
-  double by_motion[3][4], by_rate[3][6], by_across[3];
+  double by_motion[3][4], by_rate[3][6], by_section[3], by_section_rate[3];
   double spread[6][3];  // forces on the motions by a unit of each of the three
+  double section[3];    // moment on the rail's section by the same
 };
+
+/// Fills all slopes but those over motions and the roll of the section.
+void fill_rates_and_spread(const WheelRows<double>& r, const ContactCreep& creep,
+                           ContactSlopes& slopes) noexcept;
 
 /// The force at a contact in touch whose creep is known.
 inline WheelForce wheel_force(const WheelRows<double>& r, double normal, const Slip<double>& slip,
                               const ContactCreep& creep) noexcept {
   const double* const f = creep.force;
-  WheelForce force{r.depth, normal, f[1], {}, 0., creep.slides};
+  const double on_section = f[1] * r.across_section - normal * r.normal_section;
+  WheelForce force{r.depth, normal, on_section, {}, 0., creep.slides};
   force.creep_power = f[0] * slip.along + f[1] * slip.across + f[2] * slip.spin;
   generalise(r, ContactForces<double>{normal, f[0], f[1], f[2]}, force.generalised);
   return force;
@@ -231,11 +268,11 @@ inline WheelForce wheel_force(const RollingContact& c, double radius, double sid
                               const double* u, const double* v, const RailRate& rail) noexcept {
   const WheelRows<double> r = wheel_rows(c, radius, side, u[1], u[2], u[3], u[5]);
   if (!(r.depth > 0.)) return {r.depth, 0., 0., {}, 0., false};
-  const Slip<double> slip = slip_of(c, r, v, speed, radius, rail);
+  const Slip<double> slip = slip_of(r, v, speed, radius, rail);
   const double normal = normal_force(c, r.depth);
-  return wheel_force(
-      r, normal, slip,
-      contact_creep(c.creep, friction_of(c.creep, side), r.depth, normal, slip, speed));
+  return wheel_force(r, normal, slip,
+                     contact_creep(c.creep, c.creep.patch, friction_of(c.creep, side),
+                                   {r.depth, normal}, slip, speed));
 }
 
 /// The same with derivatives.

@@ -7,9 +7,8 @@ namespace railstep {
 
 namespace {
 
-constexpr double kLeastNormal = 1e-6;  // N
-constexpr double kLeastSize = 1e-10;   // of linear creep over the limit: it has a direction beyond
-constexpr double kSlides = 3.;         // linear creep over the limit; Shen, Hedrick and Elkins
+constexpr double kLeastSize = 1e-10;  // of linear creep over the limit: it has a direction beyond
+constexpr double kSlides = 3.;        // linear creep over the limit; Shen, Hedrick and Elkins
 
 /// Linear creep: forces along and across and the moment over creepages, N, N m and N m2.
 struct LinearCreep {
@@ -60,17 +59,14 @@ void saturate(const RollingCreep& c, const CreepPatch& patch, const LinearCreep&
   }
 }
 
-/// Derivatives over the normal force N. A patch that keeps its size has forces of N times a
-/// function of the creepages over N. One that grows has half lengths of N^(1/3): its forces are N
-/// times a function of both creepages over N^(1/3) and of the spin, its moment is N^(1/3) times
-/// that.
-void find_by_normal(const RollingCreep& c, double normal, const double* creepage,
+/// Derivatives over the normal force N. Half lengths are of N^g: forces are N times a function of
+/// both creepages times N^(2g - 1) and of the spin times N^(3g - 1), the moment is N^g times that.
+void find_by_normal(double growth, double normal, const double* creepage,
                     ContactCreep& found) noexcept {
-  const bool grows = c.grows == 1;
-  const double power = grows ? 1. / 3. : 1., spin = grows ? 0. : 1.;
+  const double power = 1. - 2. * growth, spin = 1. - 3. * growth;
   for (int i = 0; i < 3; ++i) {
     const double* const by = found.by_slip[i];
-    const double own = grows && i == 2 ? 4. / 3. : 1.;
+    const double own = i == 2 ? 1. + growth : 1.;
     found.by_normal[i] =
         (own * found.force[i] -
          (power * (by[0] * creepage[0] + by[1] * creepage[1]) + spin * (by[2] * creepage[2]))) /
@@ -90,25 +86,22 @@ void mirror(ContactCreep& creep) noexcept {
 
 }  // namespace
 
-ContactCreep contact_creep(const RollingCreep& c, double friction, double depth, double normal,
-                           const Slip<double>& slip, double speed) noexcept {
+ContactCreep creep_by_law(const RollingCreep& c, const RollingPatch& of, double friction,
+                          const Pressed& pressed, const Slip<double>& slip, double speed) noexcept {
   ContactCreep found{};
-  if (!(normal > kLeastNormal)) return found;
-  const double size = c.grows == 1 ? square_root(depth) : 1.;
-  const CreepPatch patch{size * c.half_length, size * c.half_width, c.shear, friction * normal,
-                         c.kalker};
+  const double size = of.growth > 0. ? square_root(pressed.depth) : 1.;
+  const CreepPatch patch{size * of.half_length, size * of.half_width, of.shear,
+                         friction * pressed.normal, of.kalker};
   const LinearCreep linear = linear_creep(patch);
   const double per_speed = per_rolling(speed);
   const bool backwards = speed < 0.;  // the mirror image of rolling ahead
   const double ahead = backwards ? -per_speed : per_speed;
   const double creepage[3] = {ahead * slip.along, per_speed * slip.across, ahead * slip.spin};
-  const bool is_linear = c.law == CreepLaw::linear;
-  if (is_linear)
+  if (c.law == CreepLaw::linear)
     take_linear(linear, creepage, found);
   else
     saturate(c, patch, linear, creepage, found);
-  // Linear creep of a patch that keeps its size does not depend on the normal force.
-  if (!is_linear || c.grows == 1) find_by_normal(c, normal, creepage, found);
+  find_by_normal(of.growth, pressed.normal, creepage, found);
   for (int i = 0; i < 3; ++i)
     for (double& slope : found.by_slip[i]) slope *= per_speed;
   if (backwards) mirror(found);

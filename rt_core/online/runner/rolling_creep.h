@@ -20,20 +20,43 @@ struct ContactCreep {
   bool slides;           // linear creep would be at least three times the limit: it has saturated
 };
 
-inline constexpr double kLeastRolling = .1;  // m/s: creepages of slower wheels are over this speed
+/// Where a contact in touch is pressed.
+struct Pressed {
+  double depth, normal;  // penetration, m, above 0; N
+};
+
+inline constexpr double kLeastRolling = .1;   // m/s: creepages of slower wheels are over this speed
+inline constexpr double kLeastNormal = 1e-6;  // N: with less there is no creep
 /// Reciprocal of the speed over which creepages are taken, s/m.
 inline double per_rolling(double speed) noexcept {
   const double size = std::fabs(speed);
   return 1. / (size > kLeastRolling ? size : kLeastRolling);
 }
 
+/// Creep by a law with a limit, or of a patch that grows.
+ContactCreep creep_by_law(const RollingCreep& c, const RollingPatch& patch, double friction,
+                          const Pressed& pressed, const Slip<double>& slip, double speed) noexcept;
+
 /// Creep of a contact in touch by the scene's law. The moment is that of linear creep times
-/// 1 - u/3 + u^2/27, u the linear force over the limit, and 1/u from u = 3 on. A normal force under
-/// 1 uN makes no creep.
+/// 1 - u/3 + u^2/27, u the linear force over the limit, and 1/u from u = 3 on.
 /// @param friction  coefficient
-/// @param depth  penetration, m, above 0
 /// @param speed  of the wheelset, m/s
-ContactCreep contact_creep(const RollingCreep& c, double friction, double depth, double normal,
-                           const Slip<double>& slip, double speed) noexcept;
+inline ContactCreep contact_creep(const RollingCreep& c, const RollingPatch& patch, double friction,
+                                  const Pressed& pressed, const Slip<double>& slip,
+                                  double speed) noexcept {
+  if (!(pressed.normal > kLeastNormal)) return {};
+  if (c.law != CreepLaw::linear || patch.growth > 0.)
+    return creep_by_law(c, patch, friction, pressed, slip, speed);
+  const double per = per_rolling(speed), turned = speed < 0. ? -per : per;
+  const double area = patch.half_length * patch.half_width, force = patch.shear * area;
+  const double along = -force * patch.kalker.c11 * per, across = -force * patch.kalker.c22 * per,
+               both = force * std::sqrt(area) * patch.kalker.c23 * turned,
+               spin = -force * area * patch.kalker.c33 * per;
+  return {{along * slip.along, across * slip.across - both * slip.spin,
+           both * slip.across + spin * slip.spin},
+          {{along, 0., 0.}, {0., across, -both}, {0., both, spin}},
+          {},
+          false};
+}
 
 }  // namespace railstep

@@ -64,6 +64,15 @@ void publish_wheelset(const Model& model, const RunnerModel& runner, int i, cons
 
 }  // namespace
 
+WheelForce force_on_wheel(const RollingContact& c, double radius, double side, double speed,
+                          const OverRail& at, const double* v, const RailRate& rate) noexcept {
+  if (!has_profiles(c)) return wheel_force(c, radius, side, speed, at.motion, v, rate);
+  ProfileWheel wheel;
+  find_profile_wheel(c, radius, side, at, wheel);
+  double stiffness[kMostZones];
+  return profile_force(c, wheel, radius, side, speed, at, v, rate, stiffness);
+}
+
 double element_place(const Model& model, const RunnerModel& runner, int wheelset, std::int64_t step,
                      double before) noexcept {
   const double way =

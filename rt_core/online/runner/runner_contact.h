@@ -1,6 +1,6 @@
 #pragma once
 #include "online/model/state.h"
-#include "online/runner/rolling_contact.h"
+#include "online/runner/profile_contact.h"
 
 namespace railstep {
 
@@ -11,22 +11,15 @@ namespace railstep {
 RailsUnder rails_under(const Model& model, const RunnerModel& runner, int wheelset,
                        std::int64_t step, double before, RailsUnder* slopes = nullptr) noexcept;
 
-/// Force of a rail on a wheel of a wheelset. @param u, v  [6] motions of the wheelset, their rates
-/// @param slopes  out: derivatives; null: none
-inline WheelForce wheel_force(const RunnerModel& runner, int wheelset, const RailsUnder& rails,
-                              const RailRate& rate, int side, double speed, const double* u,
-                              const double* v, ContactSlopes* slopes = nullptr) noexcept {
-  const double over_rail[6] = {u[0], u[1] - rails.y[side], u[2] - rails.z[side], u[3], u[4], u[5]};
-  const double radius = runner.wheelset[wheelset].radius, sign = side == 0 ? 1. : -1.;
-  if (slopes == nullptr)
-    return wheel_force(runner.contact, radius, sign, speed, over_rail, v, rate);
-  return wheel_force(runner.contact, radius, sign, speed, over_rail, v, rate, *slopes);
-}
+/// Force of a rail on a wheel of a wheelset by profiles or by cones.
+/// @param side  1 of the left wheel, -1 of the right
+WheelForce force_on_wheel(const RollingContact& c, double radius, double side, double speed,
+                          const OverRail& at, const double* v, const RailRate& rate) noexcept;
 
 /// The numbers that a state keeps of a wheel's force. @param to  [kWheelForces]
-inline void keep_wheel_force(const WheelForce& force, double crown_radius, double* to) noexcept {
+inline void keep_wheel_force(const WheelForce& force, double* to) noexcept {
   for (int d = 0; d < 3; ++d) to[d] = force.generalised[d];
-  to[3] = crown_radius * force.across;
+  to[3] = force.on_section;
 }
 
 /// Place of a wheelset along the model's elements, m.

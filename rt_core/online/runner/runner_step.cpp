@@ -38,12 +38,6 @@ void find_frame_forces(const RunnerStage& at, const State& s, const Workspace& w
 
 }  // namespace
 
-RunnerStage stage_of(const Model& model, const RunnerModel& runner, const Stage& stage) noexcept {
-  const Scheme& c = model.scheme;
-  const bool condensed = model.form == Form::condensed;
-  return {model, runner, stage, held_fraction(model), condensed ? 1. / (c.theta * c.dt) : c.kv};
-}
-
 void move_freely(const RunnerStage& at, State& s, const Workspace& w, double* u) noexcept {
   const RunnerModel& r = at.runner;
   double force[kMaxRunnerUnknowns];
@@ -109,105 +103,6 @@ void move_by(const RunnerModel& runner, const double* force, double* u, double* 
   }
 }
 
-namespace {
-
-/// Whether the law takes a motion in the middle of the step.
-constexpr bool is_earlier(BodyMotion motion) noexcept {
-  return motion == BodyMotion::y || motion == BodyMotion::yaw;
-}
-
-/// Both factors of the slopes of one wheel's three forces.
-/// @param placed  change of a motion that creep depends on with the law's own
-/// @param seat  of its rail's y, z and roll among the n coordinates; 0: they are not among them
-void fill_slopes(const ContactSlopes& w, double rate, double seat_rate, double placed,
-                 double crown_radius, int n, int side, int seat, const LawSlopes& to) noexcept {
-  for (int k = 0; k < 3; ++k) {
-    double* const own = to.slope + (3 * side + k) * n;
-    for (int m = 0; m < n; ++m) own[m] = 0.;
-    for (int m = 0; m < kMotions; ++m) own[m] = rate * w.by_rate[k][m];
-    for (int m = 0; m < 4; ++m)
-      own[index_of(kPlaced[m])] += (is_earlier(kPlaced[m]) ? placed : 1.) * w.by_motion[k][m];
-    double* const spread = to.spread + 3 * side + k;
-    for (int m = 0; m < n; ++m) spread[m * kWheelsetRank] = m < kMotions ? w.spread[m][k] : 0.;
-    if (seat == 0) continue;
-    // The wheel's place counts over the rail.
-    own[seat] = (rate - seat_rate) * w.by_rate[k][1] - own[1];
-    own[seat + 1] = (rate - seat_rate) * w.by_rate[k][2] - own[2];
-    own[seat + 2] = seat_rate * (crown_radius * w.by_across[k]);
-    spread[seat * kWheelsetRank] = -w.spread[1][k];
-    spread[(seat + 1) * kWheelsetRank] = -w.spread[2][k];
-    spread[(seat + 2) * kWheelsetRank] = k == 2 ? crown_radius : 0.;
-  }
-}
-
-}  // namespace
-
-void WheelsetLaw::evaluate(const double* z, double* force, const LawSlopes* slopes,
-                           double* steep) noexcept {
-  const int n = size();
-  const double crown = runner->contact.crown_radius;
-  double u[kMotions], v[kMotions];
-  for (int k = 0; k < kMotions; ++k) {
-    v[k] = rate * z[k] + rate_at_zero[k];
-    u[k] = is_earlier(BodyMotion{k}) ? z[k] - later * v[k] : z[k];
-    force[k] = 0.;
-  }
-  lost = slides = false;
-  for (int side = 0; side < 2; ++side) {
-    const int seat = kMotions + 3 * side;
-    RailsUnder under = rails;
-    RailRate moving{0., uneven_rate[side], 0.};
-    if (seated) {
-      const auto rate_along = [&](int k) noexcept {
-        return seat_rate * z[seat + k] + rate_at_zero[seat + k];
-      };
-      moving = {rate_along(0), moving.z + rate_along(1), rate_along(2)};
-      under.y[side] += z[seat] - later * moving.y;
-      under.z[side] += z[seat + 1];
-    }
-    ContactSlopes own;
-    const WheelForce f = wheel_force(*runner, wheelset, under, moving, side, speed, u, v,
-                                     slopes == nullptr ? nullptr : &own);
-    lost = lost || !(f.depth > 0.);
-    slides = slides || f.slides;
-    for (int k = 0; k < kMotions; ++k) force[k] += f.generalised[k];
-    keep_wheel_force(f, crown, kept[side]);
-    steep[3 * side] = f.depth > 0. ? std::sqrt(f.depth) : 0.;
-    if (slopes != nullptr)
-      fill_slopes(own, rate, seat_rate, 1. - later * rate, crown, n, side, seated ? seat : 0,
-                  *slopes);
-    if (!seated) continue;
-    force[seat] = -f.generalised[1];
-    force[seat + 1] = -f.generalised[2];
-    force[seat + 2] = crown * f.across;
-  }
-}
-
-WheelsetLaw law_of(const RunnerStage& at, int wheelset, bool seated) noexcept {
-  const double theta = at.model.scheme.theta;
-  const bool banded = at.model.form == Form::banded;
-  WheelsetLaw law{};
-  law.runner = &at.runner;
-  law.wheelset = wheelset;
-  law.seated = seated;
-  RailsUnder slope;
-  law.rails = rails_under(at.model, at.runner, wheelset, at.stage.step, at.before(theta), &slope);
-  law.speed = travelled(at.runner.travel, at.time(theta)).speed;
-  law.rate = at.rate;
-  law.seat_rate = banded ? 1. / at.stage.span : at.rate;
-  law.later = banded ? 0. : (theta - .5) * at.model.scheme.dt;
-  for (int side = 0; side < 2; ++side) {
-    law.rails.y[side] -= law.later * (law.speed * slope.y[side]);
-    law.uneven_rate[side] = law.speed * slope.z[side];
-  }
-  return law;
-}
-
-Status events_of(const WheelsetLaw& law) noexcept {
-  return (law.lost ? Status::contact_lost : Status::ok) |
-         (law.slides ? Status::full_slip : Status::ok);
-}
-
 Status status_of(NewtonStatus met) noexcept {
   switch (met) {
     case NewtonStatus::converged:
@@ -233,13 +128,15 @@ RunnerResult solve_runner(const RunnerStage& at, State& s, Workspace& w) noexcep
   for (int i = 0; i < r.wheelsets; ++i) {
     WheelsetMotion motion;
     find_motion(at, i, s, w, u, motion);
-    block[i] = {kMotions * i, kMotions, kWheelsetRank};
     law[i] = law_of(at, i, false);
+    if (has_profiles(r.contact)) law[i].profile = profile_wheels(w, r.first_wheelset + i);
     for (int k = 0; k < kMotions; ++k) {
       z_free[kMotions * i + k] = motion.free[k];
       z[kMotions * i + k] = motion.start[k];
       law[i].rate_at_zero[k] = motion.rate_at_zero[k];
     }
+    law[i].find_contacts(z + kMotions * i);
+    block[i] = {kMotions * i, kMotions, law[i].rank()};
   }
   const std::int32_t motions = kMotions * r.wheelsets;
   find_stops(at, s, w, u, z_free + motions, z + motions);
@@ -253,7 +150,7 @@ RunnerResult solve_runner(const RunnerStage& at, State& s, Workspace& w) noexcep
       },
       force, z);
   // The last point that was tried need not be the best one.
-  double steep[kWheelsetRank];
+  double steep[kMostLaw];
   for (int i = 0; i < r.wheelsets && met.status != NewtonStatus::converged; ++i)
     law[i].evaluate(z + kMotions * i, force + kMotions * i, nullptr, steep);
   move_by(r, force, u, reactions_of(at.model, s, r));

@@ -18,14 +18,16 @@ constexpr double kFriction[2] = {.3, .15};  // left, right
 RollingCreep creep_by(CreepLaw law, bool grows) {
   const double root = std::sqrt(std::pow(5e4 / kHertz, 2. / 3.));
   const double part = grows ? root : 1.;
-  return {law,           10,     grows ? 1 : 0,   {kFriction[0], kFriction[1]}, 5.9e-3 / part,
-          4.4e-3 / part, 80.8e9, kalker(1.34, .3)};
+  return {law,
+          10,
+          {kFriction[0], kFriction[1]},
+          {5.9e-3 / part, 4.4e-3 / part, 80.8e9, grows ? 1. / 3. : 0., kalker(1.34, .3)}};
 }
 
 double normal_at(double depth) { return kHertz * depth * std::sqrt(depth); }
 
 ContactCreep creep_at(const RollingCreep& c, double depth, const Slip<double>& slip) {
-  return contact_creep(c, kFriction[0], depth, normal_at(depth), slip, kSpeed);
+  return contact_creep(c, c.patch, kFriction[0], {depth, normal_at(depth)}, slip, kSpeed);
 }
 
 struct Drawn {
@@ -107,11 +109,12 @@ TEST_CASE("the limit of creep is friction times normal force", "[rolling_creep]"
   const RollingCreep c = creep_by(CreepLaw::she, true);
   const double depth = std::pow(5e4 / kHertz, 2. / 3.);
   for (const int side : {0, 1}) {
-    const ContactCreep at = contact_creep(c, kFriction[side], depth, 5e4, {10., 0., 0.}, kSpeed);
+    const ContactCreep at =
+        contact_creep(c, c.patch, kFriction[side], {depth, 5e4}, {10., 0., 0.}, kSpeed);
     CHECK(at.slides);
     CHECK(at.force[0] == Approx(-kFriction[side] * 5e4).epsilon(1e-12));
   }
-  CHECK(contact_creep(c, .3, 1e-30, 0., {1., 0., 0.}, kSpeed).force[0] == 0.);
+  CHECK(contact_creep(c, c.patch, .3, {1e-30, 0.}, {1., 0., 0.}, kSpeed).force[0] == 0.);
 }
 
 TEST_CASE("the moment of a contact is bounded where linear creep has no force", "[rolling_creep]") {
@@ -119,8 +122,8 @@ TEST_CASE("the moment of a contact is bounded where linear creep has no force", 
     const RollingCreep c = creep_by(law, false);
     const double depth = std::pow(5e4 / kHertz, 2. / 3.);
     for (const double spin : {-60., -5., 5., 60.}) {
-      const double across =
-          -c.kalker.c23 / c.kalker.c22 * std::sqrt(c.half_length * c.half_width) * spin;
+      const double across = -c.patch.kalker.c23 / c.patch.kalker.c22 *
+                            std::sqrt(c.patch.half_length * c.patch.half_width) * spin;
       for (const double off : {0., 1e-6, 1e-2}) {
         const ContactCreep linear =
             creep_at(creep_by(CreepLaw::linear, false), depth, {0., across * (1. + off), spin});
@@ -140,8 +143,8 @@ TEST_CASE("a wheel that rolls back creeps as the mirror image", "[rolling_creep]
     for (int n = 0; n < 100; ++n) {
       const auto [depth, slip] = drawn(random, .3);
       const double normal = normal_at(depth);
-      const ContactCreep ahead = contact_creep(c, .3, depth, normal, slip, kSpeed),
-                         back = contact_creep(c, .3, depth, normal,
+      const ContactCreep ahead = contact_creep(c, c.patch, .3, {depth, normal}, slip, kSpeed),
+                         back = contact_creep(c, c.patch, .3, {depth, normal},
                                               {-slip.along, slip.across, -slip.spin}, -kSpeed);
       constexpr double kMirrored[3] = {-1., 1., -1.};
       for (int i = 0; i < 3; ++i) {

@@ -1,0 +1,193 @@
+#include "online/runner/profile_contact.h"
+
+namespace railstep {
+
+namespace {
+
+constexpr double kLeastDepth = 3e-5;  // m, up to which strips of a patch reach at least
+constexpr double kFarOff = 2e-4;      // m
+constexpr double kMostDepth = 3e-3;   // m: a wheel that is deeper is not on the rail but in it
+
+struct SectionVector {
+  double y, z;
+};
+
+/// The wheelset's middle in the frame of the rail's profile, y outwards.
+struct Middle {
+  double y, z;          // m
+  double cosine, sine;  // of the section's roll, positive outwards
+};
+
+Middle middle_of(const ProfileContact& c, double radius, double side, const OverRail& at) noexcept {
+  const tread_contact::CosineSine<double> turn = tread_contact::turned(side * at.section);
+  const double height = c.height + (radius - c.pair.radius);
+  const double y = side * at.motion[index_of(BodyMotion::y)] - c.point_y,
+               z = (height + at.motion[index_of(BodyMotion::z)]) - c.point_z;
+  return {c.point_y + (y * turn.cosine + z * turn.sine),
+          c.point_z + (z * turn.cosine - y * turn.sine), turn.cosine, turn.sine};
+}
+
+ProfilePair pair_of(const ProfileContact& c, double radius) noexcept {
+  ProfilePair pair = c.pair;
+  pair.radius = radius;
+  return pair;
+}
+
+/// Rows of a patch that is pressed at a point.
+void fill_patch_rows(const ProfileContact& c, const Middle& middle, double side,
+                     const tread_contact::Axle<double>& axle, const PressedPoint& point,
+                     ProfilePatch& patch) noexcept {
+  const double size = 1. / std::sqrt(1. + point.slope * point.slope);
+  const auto to_track = [&](double y, double z) noexcept -> SectionVector {
+    return {side * (y * middle.cosine - z * middle.sine), y * middle.sine + z * middle.cosine};
+  };
+  WheelRows<double>& rows = patch.rows;
+  const SectionVector normal = to_track(-size * point.slope, size),
+                      arm = to_track(point.y - middle.y, point.z - middle.z),
+                      of_rail = to_track(point.y - c.point_y, point.z - c.point_z);
+  rows.depth = patch.zone.depth;
+  rows.n_y = normal.y;
+  rows.n_z = normal.z;
+  fill_rows(axle, {point.ahead, arm.y, arm.z}, rows);
+  rows.normal_section = normal.z * of_rail.y - normal.y * of_rail.z;
+  rows.across_section = normal.y * of_rail.y + normal.z * of_rail.z;
+  // The contact goes ahead with the yaw as the plane of contact slopes.
+  patch.across_turned = arm.z / normal.z;
+}
+
+/// Whether the scene gives coefficients of creep, which hold for a wheel.
+bool has_coefficients(const RollingContact& c) noexcept { return c.creep.patch.growth == 0.; }
+
+/// Size and shape of a patch as creep sees it. It has a force from a little depth on, and grows as
+/// the root of what is beyond that.
+/// @param force, depth  of the patch pressed so deep
+void fill_creep_patch(const RollingContact& c, const PatchForce& force, double depth,
+                      ProfilePatch& patch) noexcept {
+  const double per_root = 1. / std::sqrt(depth - patch.zone.patch.hold.gap);
+  patch.creep = {per_root * force.half_length, per_root * force.half_width, c.creep.patch.shear, 1.,
+                 kalker(force.half_length / force.half_width, c.profiles.poisson)};
+}
+
+/// Divides the coefficients of a wheel among its patches by their normal forces.
+/// @param normal  [patches] N
+void share_coefficients(const RollingContact& c, const double* normal,
+                        ProfileWheel& wheel) noexcept {
+  double all = 0.;
+  for (int i = 0; i < wheel.patches; ++i) all += normal[i];
+  for (int i = 0; i < wheel.patches; ++i) {
+    wheel.patch[i].creep = c.creep.patch;
+    wheel.patch[i].creep.shear *= all > 0. ? normal[i] / all : 1. / wheel.patches;
+  }
+}
+
+}  // namespace
+
+ProfileWheel* profile_wheels(const Workspace& w, std::int32_t wheelset) noexcept {
+  static_assert(sizeof(ProfileWheel) <= kProfileWheelDoubles * sizeof(double));
+  return reinterpret_cast<ProfileWheel*>(w.profile) + 2 * std::ptrdiff_t{wheelset};
+}
+
+void find_profile_wheel(const RollingContact& c, double radius, double side, const OverRail& at,
+                        ProfileWheel& wheel) noexcept {
+  const Middle middle = middle_of(c.profiles, radius, side, at);
+  const double roll = at.motion[index_of(BodyMotion::roll)],
+               yaw = at.motion[index_of(BodyMotion::yaw)];
+  const ProfilePair pair = pair_of(c.profiles, radius);
+  const WheelsetPlace place{middle.y, middle.z, side * (roll - at.section), side * yaw};
+  const tread_contact::Axle<double> axle(roll, yaw);
+  for (int m = 0; m < 4; ++m) wheel.placed[m] = at.motion[index_of(kPlaced[m])];
+  wheel.section = at.section;
+  wheel.patches = 0;
+  WheelZone zone[kMostZones];
+  int zones = find_zones(pair, place, kLeastDepth, zone);
+  for (int i = 0; i < zones; ++i)
+    if (zone[i].depth > kMostDepth) zones = 0;
+  wheel.at_edge = zones == 0;
+  double normal[kMostZones];
+  for (int i = 0; i < zones; ++i) {
+    if (zone[i].depth < -kFarOff) continue;
+    ProfilePatch& patch = wheel.patch[wheel.patches];
+    patch.zone = zone[i];
+    wheel.at_edge = wheel.at_edge || (zone[i].at_edge && zone[i].depth > 0.);
+    const double part = zone[i].depth / kLeastDepth;
+    const double depth = part > 1. ? zone[i].depth : kLeastDepth;
+    const PatchForce own = patch_force(patch_of(patch.zone), depth);
+    normal[wheel.patches++] = part > 1. ? own.normal : part > 0. ? own.normal * part : 0.;
+    fill_creep_patch(c, own, depth, patch);
+    fill_patch_rows(c.profiles, middle, side, axle,
+                    pressed_point(pair, place, zone[i].s + zone[i].cosine_of_wheel * own.centre),
+                    patch);
+  }
+  if (has_coefficients(c)) share_coefficients(c, normal, wheel);
+}
+
+namespace {
+
+double depth_at(const ProfileWheel& wheel, const WheelRows<double>& r,
+                const OverRail& at) noexcept {
+  const double row[4] = {r.n_y, r.n_z, r.normal_roll, r.normal_yaw};
+  double depth = r.depth + r.normal_section * (at.section - wheel.section);
+  for (int m = 0; m < 4; ++m) depth -= row[m] * (at.motion[index_of(kPlaced[m])] - wheel.placed[m]);
+  return depth;
+}
+
+void find_slopes(const WheelRows<double>& r, double across_turned, double stiffness, double spin,
+                 const ContactCreep& creep, ContactSlopes& slopes) noexcept {
+  fill_rates_and_spread(r, creep, slopes);
+  const double deeper[4] = {-r.n_y, -r.n_z, -r.normal_roll, -r.normal_yaw};
+  for (int k = 0; k < 3; ++k) {
+    const double by_depth = stiffness * (k == 0 ? 1. : creep.by_normal[k - 1]);
+    for (int m = 0; m < 4; ++m) slopes.by_motion[k][m] = by_depth * deeper[m];
+    slopes.by_section[k] = by_depth * r.normal_section;
+    if (k > 0) slopes.by_motion[k][3] += creep.by_slip[k - 1][1] * (across_turned * spin);
+  }
+}
+
+void add(const WheelForce& own, WheelForce& sum) noexcept {
+  if (own.depth > sum.depth) sum.depth = own.depth;
+  sum.normal += own.normal;
+  sum.on_section += own.on_section;
+  sum.creep_power += own.creep_power;
+  for (int k = 0; k < 6; ++k) sum.generalised[k] += own.generalised[k];
+}
+
+}  // namespace
+
+WheelForce profile_force(const RollingContact& c, const ProfileWheel& wheel, double radius,
+                         double side, double speed, const OverRail& at, const double* v,
+                         const RailRate& rail, double* stiffness, ContactSlopes* slopes) noexcept {
+  WheelForce sum{-1., 0., 0., {}, 0., false};
+  int touching = 0, sliding = 0;
+  const double spin = speed / radius + v[index_of(BodyMotion::pitch)];
+  const double yawed = at.motion[index_of(BodyMotion::yaw)] - wheel.placed[3];
+  for (int i = 0; i < wheel.patches; ++i) {
+    const ProfilePatch& patch = wheel.patch[i];
+    WheelRows<double> rows = patch.rows;
+    rows.depth = depth_at(wheel, rows, at);
+    stiffness[i] = 0.;
+    if (slopes != nullptr) slopes[i] = {};
+    if (!(rows.depth > 0.)) {
+      if (rows.depth > sum.depth) sum.depth = rows.depth;
+      continue;
+    }
+    rows.across_spin += patch.across_turned * yawed;
+    const Slip<double> slip = slip_of(rows, v, speed, radius, rail);
+    const PatchForce force = patch_force(patch_of(patch.zone), rows.depth);
+    const double beyond = rows.depth - patch.zone.patch.hold.gap;
+    RollingPatch grown = patch.creep;
+    if (grown.growth > 0. && force.normal > 0.)
+      grown.growth = .5 * force.normal / (force.stiffness * beyond);
+    const ContactCreep creep = contact_creep(c.creep, grown, friction_of(c.creep, side),
+                                             {beyond, force.normal}, slip, speed);
+    stiffness[i] = force.stiffness;
+    if (slopes != nullptr)
+      find_slopes(rows, patch.across_turned, force.stiffness, spin, creep, slopes[i]);
+    add(wheel_force(rows, force.normal, slip, creep), sum);
+    ++touching;
+    sliding += creep.slides ? 1 : 0;
+  }
+  sum.slides = touching > 0 && sliding == touching;
+  return sum;
+}
+
+}  // namespace railstep

@@ -1,0 +1,50 @@
+#pragma once
+#include "online/model/state.h"
+#include "online/runner/rolling_contact.h"
+
+namespace railstep {
+
+// Wheels on rails by their profiles. Where a wheel touches is found for one place of the wheelset,
+// and holds for places near it: rows, strips and the shapes of patches do not change.
+
+/// Where a wheelset is over one of its rails.
+struct OverRail {
+  const double* motion;  // [6] of the wheelset over the rail's top, m and rad
+  double section;        // roll of the rail's section, rad
+};
+
+struct ProfilePatch {
+  WheelRows<double> rows;
+  double across_turned;  // slip across by a unit of yaw, over the wheel's spin, m
+  RollingPatch creep;
+  WheelZone zone;
+};
+
+/// A wheel as it touches at one place.
+struct ProfileWheel {
+  double placed[4], section;  // that place: kPlaced over the rail, and the section's roll
+  std::int32_t patches;       // also those that do not touch yet
+  bool at_edge;  // a patch reaches the end of a profile, or the wheel is beside its rail
+  ProfilePatch patch[kMostZones];
+};
+
+/// The wheels of a wheelset in the workspace, [2]. @param wheelset  among those of all runners
+ProfileWheel* profile_wheels(const Workspace& w, std::int32_t wheelset) noexcept;
+
+/// Finds where a wheel touches. Zones that are more than 0.2 mm off are left out; a wheel that is
+/// more than 3 mm deep in its rail, as one that fell beside it may be, is beside it. A patch is as
+/// long as Kik and Piotrowski's at its point of least gap and has its area; it is pressed, and has
+/// its slope, at the centre of its pressure.
+/// @param side  1 of the left wheel, -1 of the right
+void find_profile_wheel(const RollingContact& c, double radius, double side, const OverRail& at,
+                        ProfileWheel& wheel) noexcept;
+
+/// Sum of the forces of a wheel's patches at a place near that at which it was found.
+/// @param stiffness  [patches] out: of the normal forces, N/m
+/// @param slopes     [patches] out; null: none
+WheelForce profile_force(const RollingContact& c, const ProfileWheel& wheel, double radius,
+                         double side, double speed, const OverRail& at, const double* v,
+                         const RailRate& rail, double* stiffness,
+                         ContactSlopes* slopes = nullptr) noexcept;
+
+}  // namespace railstep

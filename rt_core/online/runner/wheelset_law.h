@@ -1,0 +1,82 @@
+#pragma once
+#include "online/math/newton.h"
+#include "online/runner/runner_contact.h"
+
+namespace railstep {
+
+/// One runner in a stage, and the instants at which its equation and its contacts hold.
+struct RunnerStage {
+  const Model& model;
+  const RunnerModel& runner;
+  const Stage& stage;
+  double held;  // fraction of the stage at which the equation of motion holds
+  double
+      rate;  // change of a motion's rate at the contacts' instant by a change of the motion there
+  double before(double fraction) const noexcept {
+    return stage.before + (1. - fraction) * stage.span;
+  }
+  double time(double fraction) const noexcept {
+    return static_cast<double>(stage.step) * model.scheme.dt - before(fraction);
+  }
+};
+RunnerStage stage_of(const Model& model, const RunnerModel& runner, const Stage& stage) noexcept;
+
+/// The law of one wheelset: its six motions, then those of the seats under its left and right
+/// wheel, if they give way: y, z and roll.
+struct WheelsetLaw {
+  const RunnerModel* runner;
+  int wheelset;
+  bool seated;
+  RailsUnder rails;
+  /// Rates are these times the motions, of the wheelset and of the seats, and `rate_at_zero`.
+  double speed, rate, seat_rate;
+  /// Motions are those at theta of a step. Rates are in its middle, this much earlier, s, and so
+  /// are yaw and y, on which creep depends: where it looks ahead of its rates the vehicle hunts too
+  /// late. z and roll, by which the contact's stiff spring is pressed, stay together.
+  double later;
+  /// On a rail that rises at this rate by its unevenness the contact moves ahead on the wheel, by
+  /// as much as makes up for the wheel's own rise, m/s.
+  double uneven_rate[2];
+  double rate_at_zero[kMotions + 6];
+  /// [2] where its wheels touch by their profiles, of find_contacts(); null: treads are cones.
+  ProfileWheel* profile;
+  double kept[2][kWheelForces];  // State::wheel_force of the last evaluation
+  bool lost;                     // a wheel was free there
+  bool slides;                   // the creep of a wheel has saturated
+  bool at_edge;                  // a wheel touches at the end of a profile
+
+  int size() const noexcept { return seated ? kMotions + 6 : kMotions; }
+  /// Scalars of the law: normal force, creep along and across of each cone or patch. If they are
+  /// more than its coordinates, these take their place. Known after find_contacts().
+  int rank() const noexcept;
+  /// Finds where profiles touch, and holds it in all evaluations.
+  /// @param z  [size] motions that the step leads to as far as is known before it
+  void find_contacts(const double* z) noexcept;
+  /// @param slopes  out: of the rank() scalars. How the directions of forces turn, and the creep
+  ///                moment, change it too little in a step to be worth their work. Null: none
+  /// @param steep   [rank] out: slopes of the normal forces, by cones as roots of depths; of other
+  ///                scalars they do not change
+  void evaluate(const double* z, double* force, const LawSlopes* slopes, double* steep) noexcept;
+
+ private:
+  struct Placed {
+    double u[kMotions], v[kMotions];
+    RailsUnder under;
+    RailRate moving[2];
+  };
+  void place(const double* z, Placed& at) const noexcept;
+  int contacts(int side) const noexcept;
+  bool is_folded() const noexcept;
+  WheelForce on_cone(const Placed& at, int side, const LawSlopes* slopes,
+                     double* steep) const noexcept;
+  WheelForce on_profile(const Placed& at, int side, const LawSlopes* slopes,
+                        double* steep) const noexcept;
+};
+
+/// The law of a wheelset without its rates at zero.
+WheelsetLaw law_of(const RunnerStage& at, int wheelset, bool seated) noexcept;
+
+/// Events of the last evaluation: contact_lost, full_slip, beyond_profile.
+Status events_of(const WheelsetLaw& law) noexcept;
+
+}  // namespace railstep
