@@ -62,7 +62,7 @@ double growth_at(double speed, double dt) {
 
 TEST_CASE("a wheelset with profiles hunts from its linear critical speed on", "[profile_scene]") {
   // Contacts are found once a step, where it will be at the instant of the scheme's forces. Found
-  // at the step's end instead, the speed of runs is 3 % too high at 1 ms.
+  // at its start instead, runs hunt some per cent too early at 1 ms.
   const auto linear = critical_speed_between(wheelset(), 45., 55.);
   REQUIRE(linear);
   for (const auto& [dt, allowed] : {std::pair{1e-3, 3e-4}, {5e-4, 3e-4}}) {
@@ -125,15 +125,30 @@ TEST_CASE("the energy of vehicles on profiles is balanced", "[profile_scene]") {
   CHECK(std::fabs(full.numerical_loss) < 1e-4);
 }
 
+TEST_CASE("wheels that creep over a corrugated rail make no energy", "[profile_scene]") {
+  for (const Words& kind : {Words{"condense.kind=\"modal\""}, {"condense={kind=\"full\"}"}}) {
+    const Simulation run(
+        ring(joined(kind, {"step.dt_s=5e-5", "step.duration_s=0.15",
+                           "defect=[{kind=\"corrugation\",from_m=0.0,to_m=30.0,wavelength_m=0.06,"
+                           "amplitude_m=2e-5}]"})));
+    const EnergyBalance balance = balance_of(*run.packed(), run.model(), run.model().steps);
+    INFO(kind[0] << ": error " << balance.error << ", loss " << balance.numerical_loss);
+    // Of a condensed track the account leaves out the rates of its residual flexibility.
+    CHECK(balance.error < (kind.front().find("modal") == std::string::npos ? 1e-4 : 5e-4));
+    CHECK(balance.numerical_loss > -5e-5);
+  }
+}
+
 TEST_CASE("on a track that is stiff enough profiles run as on rigid rails", "[profile_scene]") {
   const std::string rails =
       "irregularity={spectrum=\"german_low\",geometries=[\"vertical\",\"alignment\","
       "\"cross_level\"],period_m=1000.0}";
   const std::string creep = "contact.kalker=[9.25e6,8.52e6,1.95e4,53.8]";
-  const Traced rigid(
-      wheelset({"vehicle=[{name=\"car\",file=\"../vehicles/manchester_1.toml\",speed_m_per_s=40.0,"
-                "start_m=11.4}]",
-                rails, creep, "condense.kind=\"modal\"", "step.duration_s=1.0", "step.dt_s=1e-3"}));
+  const std::string car =
+      "vehicle=[{name=\"car\",file=\"../vehicles/manchester_1.toml\",speed_m_per_s=40.0,"
+      "start_m=11.4}]";
+  const Traced rigid(wheelset(
+      {car, rails, creep, "condense.kind=\"modal\"", "step.duration_s=1.0", "step.dt_s=1e-3"}));
   const Traced stiff(ring(
       {rails, creep, "step.dt_s=1e-3", "step.duration_s=1.0", "support.stiffness_x_n_per_m=5.0e11",
        "support.stiffness_y_n_per_m=5.0e11", "support.stiffness_z_n_per_m=2.0e12",

@@ -188,8 +188,8 @@ TEST_CASE("depths follow the rows of a wheel's patch", "[profile_contact]") {
       const double by_rows = depth_of(pair.contact, wheel, side, more.u, more.section) -
                              depth_of(pair.contact, wheel, side, less.u, less.section);
       INFO("case " << n << ", motion " << m);
-      const double lever = m == 0 ? .05 : m == 1 ? 1. : m == 3 ? .02 : .75;
-      worst = std::max(worst, std::fabs(by_rows - truly) / (2. * step[m] * lever));
+      constexpr double kLever[5] = {.05, 1., .75, .02, .02};
+      worst = std::max(worst, std::fabs(by_rows - truly) / (2. * step[m] * kLever[m]));
     }
   }
   CHECK(worst < .15);
@@ -202,7 +202,9 @@ TEST_CASE("slopes of a patch are those of its forces", "[profile_contact]") {
     for (int n = 0; n < 200; ++n) {
       const double side = n % 2 == 0 ? 1. : -1.;
       const Riding d = draws.state(side);
-      const auto [wheel, f] = found(pair.contact, side, d);
+      const Found at_once = found(pair.contact, side, d);
+      const ProfileWheel& wheel = at_once.wheel;
+      const WheelForce& f = at_once.force;
       if (wheel.patches != 1 || f.depth < 1e-5 || f.slides) continue;
       double stiffness[kMostZones];
       ContactSlopes slopes[kMostZones];
