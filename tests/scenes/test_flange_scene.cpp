@@ -199,9 +199,9 @@ TEST_CASE("wheelset_flange: energies balance, including the flange's", "[scenes]
 
 TEST_CASE("a wheelset at 30 m/s along its flange balances energy on a track with or without ends",
           "[scenes]") {
-  using Words = std::pair<const char*, const char*>;
+  using Choice = std::pair<const char*, const char*>;
   const auto [name, kind] =
-      GENERATE(Words{"ballasted_track", "full"}, Words{"endless_track", "modal"});
+      GENERATE(Choice{"ballasted_track", "full"}, Choice{"endless_track", "modal"});
   const std::string flange =
       "wheelset[0].flange={clearance_m=1e-4, contact=\"linear\", stiffness_n_per_m=2e7, "
       "damping_n_s_per_m=5e4}";

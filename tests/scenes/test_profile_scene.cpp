@@ -133,7 +133,7 @@ TEST_CASE("wheels that creep over a corrugated rail make no energy", "[profile_s
                            "amplitude_m=2e-5}]"})));
     const EnergyBalance balance = balance_of(*run.packed(), run.model(), run.model().steps);
     INFO(kind[0] << ": error " << balance.error << ", loss " << balance.numerical_loss);
-    // Of a condensed track the account leaves out the rates of its residual flexibility.
+    // The account of a condensed track leaves out the rates of its residual flexibility.
     CHECK(balance.error < (kind.front().find("modal") == std::string::npos ? 1e-4 : 5e-4));
     CHECK(balance.numerical_loss > -5e-5);
   }
