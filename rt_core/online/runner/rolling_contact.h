@@ -115,8 +115,10 @@ struct WheelRows {
   T along_roll, along_spin, along_yaw;
   T across_roll, across_spin, across_yaw;
   T spin_roll, spin_spin;  // of the moment; n_z about z
-  /// The same two forces on the rail, about the point of its section from which it is placed: the
-  /// centre of its crown, or with profiles its top. Negative.
+  /// Penetration by a unit of roll of the rail's section, and slip across by a unit of its rate, m.
+  /// The section rolls about the point from which it is placed: the centre of its crown, or with
+  /// profiles its top. The moment on it is across_section times the force across on the wheel less
+  /// normal_section times the normal force.
   double normal_section, across_section;
 };
 
