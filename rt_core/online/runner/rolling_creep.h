@@ -22,11 +22,12 @@ struct ContactCreep {
 
 /// Where a contact in touch is pressed.
 struct Pressed {
-  double depth, normal;  // penetration, m, above 0; N
+  /// Penetration beyond that from which on there is a force, m, above 0; N.
+  double depth, normal;
 };
 
 inline constexpr double kLeastRolling = .1;   // m/s: creepages of slower wheels are over this speed
-inline constexpr double kLeastNormal = 1e-6;  // N: with less there is no creep
+inline constexpr double kLeastNormal = 1e-6;  // N: a smaller normal force makes no creep
 /// Reciprocal of the speed over which creepages are taken, s/m.
 inline double per_rolling(double speed) noexcept {
   const double size = std::fabs(speed);
