@@ -24,10 +24,10 @@ bool are_above_zero(const double* values, std::int64_t n) noexcept {
   return true;
 }
 
-bool are_finite(const double* values, std::int64_t n) noexcept {
-  bool finite = true;
-  for (std::int64_t i = 0; i < n; ++i) finite = finite && std::isfinite(values[i]);
-  return finite;
+bool are_moderate(const double* values, std::int64_t n) noexcept {
+  bool moderate = true;
+  for (std::int64_t i = 0; i < n; ++i) moderate = moderate && is_moderate(values[i]);
+  return moderate;
 }
 bool are_not_negative(const double* values, std::int64_t n) noexcept {
   for (std::int64_t i = 0; i < n; ++i)
@@ -151,13 +151,13 @@ bool creep_is_valid(const RollingCreep& c) noexcept {
 
 bool profile_is_valid(const ProfileTable& t) noexcept {
   return t.points >= 2 && t.per_step > 0. && t.coefficient &&
-         are_finite(t.coefficient, 4 * std::int64_t{t.points});
+         are_moderate(t.coefficient, 4 * std::int64_t{t.points});
 }
 
 bool profiles_are_valid(const ProfileContact& c) noexcept {
   const ProfilePair& pair = c.pair;
   for (const double* places : {pair.search_place, pair.search_growth, pair.search_slope})
-    if (!places || !are_finite(places, kSearchStrips)) return false;
+    if (!places || !are_moderate(places, kSearchStrips)) return false;
   for (int i = 1; i < kSearchStrips; ++i)
     if (!(pair.search_place[i] > pair.search_place[i - 1])) return false;
   return profile_is_valid(pair.wheel) && profile_is_valid(pair.rail) && pair.half_distance > 0. &&
