@@ -20,7 +20,7 @@ namespace {
 constexpr double kRadius = .46, kCrown = .3;          // m
 constexpr double kModulus = 210e9 / (1. - .09);       // N/m2
 constexpr double kHertz = 1.0412e-4, kForce = 100e3;  // approach, m, and force, N, by Hertz
-constexpr double kLeastDepth = 5e-6;                  // m
+constexpr double kLeastDepth = kLeastPatchDepth;
 
 std::vector<double> gap_of(int strips, double width) {
   std::vector<double> gap;

@@ -104,7 +104,8 @@ double strain_of(const RollingContact& c, double radius, double side, const Over
   find_profile_wheel(c, radius, side, at, wheel);
   double sum = 0.;
   for (std::int32_t i = 0; i < wheel.patches; ++i)
-    sum += work_of(patch_of(wheel.patch[i].zone), std::max(wheel.patch[i].rows.depth, 0.));
+    sum += wheel.patch[i].zone.share *
+           work_of(patch_of(wheel.patch[i].zone), std::max(wheel.patch[i].rows.depth, 0.));
   return sum;
 }
 

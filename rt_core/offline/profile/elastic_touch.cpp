@@ -15,7 +15,6 @@ namespace {
 constexpr int kStrips = 64;               // of a patch
 constexpr double kBesideRail = .5;        // m: distances beside the rail are larger
 constexpr double kFinePlace = 1e-8;       // m
-constexpr double kFirstApproach = 5e-5;   // m
 constexpr double kMostApproach = 3e-3;    // m
 constexpr double kMostRollBeyond = 1e-2;  // rad, beyond that of rigid contact
 
@@ -33,64 +32,57 @@ class Loading {
     for (std::size_t i = 1; i + 1 < at.size(); ++i)
       if (at[i] <= at[i - 1] && at[i] < at[i + 1] && at[i] < least_ + kMostApproach &&
           at[i - 1] < kBesideRail && at[i + 1] < kBesideRail)
-        minima_.push_back(i);
+        minima_.push_back(
+            {i, golden_section([this](double s) { return -wheel_.distance(s); },
+                               samples_.place(i - 1), samples_.place(i + 1), kFinePlace)
+                    .first});
   }
 
   /// A patch under some approach: its deepest sample and point, and the ridges to its neighbours.
   struct Valley {
     std::size_t deepest, first, last;
     double place;  // on the wheel, m
+    double share;  // WheelPatch::share
   };
-  /// Which minima share a patch under an approach.
+  /// Which minima share a patch under an approach, and how far.
   [[nodiscard]] std::vector<Valley> valleys(double approach) const {
     std::vector<Valley> found;
-    for (const std::size_t i : minima_) {
-      if (!found.empty() && share(found.back().deepest, i, approach)) {
-        if (samples_.distance[i] < samples_.distance[found.back().deepest])
-          found.back().deepest = i;
+    for (const auto& [at, place] : minima_) {
+      if (!found.empty() && !(apart(found.back().deepest, at, approach) > 0.)) {
+        Valley& last = found.back();
+        if (samples_.distance[at] < samples_.distance[last.deepest])
+          last = {at, last.first, last.last, place, 1.};
         continue;
       }
-      found.push_back({i, 0, samples_.distance.size() - 1, 0.});
+      found.push_back({at, 0, samples_.distance.size() - 1, place, 1.});
     }
     for (std::size_t k = 1; k < found.size(); ++k)
       found[k - 1].last = found[k].first = ridge(found[k - 1].deepest, found[k].deepest);
-    for (Valley& valley : found)
-      valley.place = golden_section([this](double s) { return -wheel_.distance(s); },
-                                    samples_.place(valley.deepest - 1),
-                                    samples_.place(valley.deepest + 1), kFinePlace)
-                         .first;
-    return found;
+    return with_shares(found, approach);
   }
-  [[nodiscard]] std::vector<WheelPatch> under(double approach,
-                                              const std::vector<Valley>& all) const {
+  [[nodiscard]] std::vector<WheelPatch> under(double approach) const {
     std::vector<WheelPatch> patches;
-    for (const Valley& valley : all) {
+    for (const Valley& valley : valleys(approach)) {
       const double above = std::max(wheel_.distance(valley.place) - least_, 0.);
       if (!(approach > above)) continue;
       const auto [from, to] = edges(valley, level(above, approach));
       if (from < valley.place && valley.place < to)
-        patches.push_back(patch(valley.place, from, to, approach - above));
+        patches.push_back(patch(valley.place, from, to, approach - above, valley.share));
     }
     return patches;
   }
-  [[nodiscard]] double upright(double approach, const std::vector<Valley>& all) const {
+  [[nodiscard]] double upright(double approach) const {
     double sum = 0.;
-    for (const WheelPatch& p : under(approach, all)) sum += p.upright;
+    for (const WheelPatch& p : under(approach)) sum += p.upright;
     return sum;
   }
   [[nodiscard]] WheelLoaded carrying(double force) const {
-    // Which minima share a patch is decided at the approach before, and kept in the search.
-    double approach = kFirstApproach;
-    std::vector<Valley> all;
-    for (int turn = 0; turn < 4; ++turn) {
-      all = valleys(approach);
-      if (!(force > 0.) || !(upright(kMostApproach, all) > force))
-        refuse("E-TOUCH-02",
-               "the rails do not carry " + std::to_string(force) + " N with an approach of 3 mm");
-      approach = bracketed_root([&](double d) { return upright(d, all) - force; }, 0.,
-                                kMostApproach, 1e-12);
-    }
-    return {-least_ - approach, approach, under(approach, all)};
+    if (!(force > 0.) || !(upright(kMostApproach) > force))
+      refuse("E-TOUCH-02",
+             "the rails do not carry " + std::to_string(force) + " N with an approach of 3 mm");
+    const double approach =
+        bracketed_root([&](double d) { return upright(d) - force; }, 0., kMostApproach, 1e-12);
+    return {-least_ - approach, approach, under(approach)};
   }
 
  private:
@@ -105,10 +97,33 @@ class Loading {
                          first + static_cast<std::ptrdiff_t>(right) + 1) -
         first);
   }
-  /// The overlap about the deeper of two minima goes beyond the ridge between them.
-  [[nodiscard]] bool share(std::size_t left, std::size_t right, double approach) const {
-    const double above = std::min(samples_.distance[left], samples_.distance[right]) - least_;
-    return samples_.distance[ridge(left, right)] < level(above, approach);
+  /// patches_apart() of two minima under an approach.
+  [[nodiscard]] double apart(std::size_t left, std::size_t right, double approach) const {
+    const auto gap = [&](std::size_t i) { return samples_.distance[i] - least_ - approach; };
+    const double a = gap(left), b = gap(right);
+    return patches_apart(std::min(a, b), std::max(a, b), gap(ridge(left, right)), kLeastPatchDepth);
+  }
+  /// Valleys, and those that are next to each other as one, with the shares that they have.
+  [[nodiscard]] std::vector<Valley> with_shares(const std::vector<Valley>& found,
+                                                double approach) const {
+    const std::vector<double>& at = samples_.distance;
+    const auto from_next = [&](int k) {
+      const auto own = static_cast<std::size_t>(k);
+      return apart(found[own - 1].deepest, found[own].deepest, approach);
+    };
+    std::vector<Valley> all;
+    for_each_share(
+        static_cast<int>(found.size()), from_next, [&](int first, int last, double share) {
+          const auto from = found.begin() + first, to = found.begin() + last;
+          Valley one = *std::min_element(from, to + 1, [&](const Valley& a, const Valley& b) {
+            return at[a.deepest] < at[b.deepest];
+          });
+          one.first = from->first;
+          one.last = to->last;
+          one.share = share;
+          all.push_back(one);
+        });
+    return all;
   }
   /// First and last place of a valley that lies below a distance.
   [[nodiscard]] std::pair<double, double> edges(const Valley& valley, double below) const {
@@ -123,7 +138,8 @@ class Loading {
     return {a > valley.first ? crossing(a, a - 1) : samples_.place(a),
             b < valley.last ? crossing(b, b + 1) : samples_.place(b)};
   }
-  [[nodiscard]] WheelPatch patch(double deepest, double from, double to, double upwards) const {
+  [[nodiscard]] WheelPatch patch(double deepest, double from, double to, double upwards,
+                                 double share) const {
     const WheelTouch touch = wheel_.touch_at(deepest);
     const double lowest = wheel_.distance(deepest);
     // Strips to both sides of the deepest point, of a width that covers the overlap.
@@ -146,16 +162,26 @@ class Loading {
     strips.width /= cosine;
     strips.radius = (radius_ + mean.growth) / cosine;
     const double approach = normal * upwards;
-    const PatchForce force = patch_force(strips, approach);
-    return {touch, approach, normal * force.normal, force,
-            wheel_.touch_at(deepest + cosine * force.centre)};
+    PatchForce force = patch_force(strips, approach);
+    force.normal *= share;
+    force.stiffness *= share;
+    return {touch,
+            approach,
+            normal * force.normal,
+            force,
+            wheel_.touch_at(deepest + cosine * force.centre),
+            share};
   }
 
   WheelOverRail wheel_;
   double roll_, radius_, modulus_;
   WheelOverRail::Samples samples_;
   double least_;
-  std::vector<std::size_t> minima_;
+  struct Least {
+    std::size_t sample;
+    double place;  // on the wheel, m
+  };
+  std::vector<Least> minima_;
 };
 
 }  // namespace

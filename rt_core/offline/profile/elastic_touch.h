@@ -18,6 +18,7 @@ struct WheelPatch {
   double upright;      // part of the normal force, N
   PatchForce force;    // its centre is along the contact plane
   WheelTouch centre;   // at the centre of its pressure
+  double share;        // WheelZone::share; of the forces it is taken
 };
 
 /// A wheel under load.

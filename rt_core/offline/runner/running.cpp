@@ -41,6 +41,23 @@ void add_wheelset(const RollingContact& contact, double radius, double speed,
   }
 }
 
+VectorXd forces_at(const Runner& runner, const RollingContact& contact, double speed,
+                   const VectorXd& u, const VectorXd& v, const std::vector<RailsUnder>& rails) {
+  SteadyRunning at;
+  at.displacement = u;
+  at.rate = v;
+  const auto wheels = wheel_forces(runner, contact, speed, at, rails);
+  VectorXd sum = VectorXd::Zero(u.size());
+  std::size_t set = 0;
+  for (std::size_t b = 0; b < runner.bodies.size(); ++b) {
+    if (!runner.bodies[b].is_wheelset()) continue;
+    for (const WheelForce& wheel : wheels[set])
+      for (int k = 0; k < kMotions; ++k) sum[first_of(b) + k] += wheel.generalised[k];
+    ++set;
+  }
+  return sum;
+}
+
 Contacts contacts_at(const Runner& runner, const RollingContact& contact, double speed,
                      const VectorXd& u, const VectorXd& v,
                      const std::vector<RailsUnder>& rails = {}) {
@@ -99,28 +116,62 @@ void sink_wheelsets(const Runner& runner, double by, VectorXd& u) {
     if (runner.bodies[b].is_wheelset()) u[first_of(b) + index_of(BodyMotion::z)] -= by;
 }
 
+/// Lets each wheelset roll where it touches: creep of wheels that slide has hardly a slope.
+/// Profiles may touch far from the tread's datum, where the radius is another one.
+void roll_wheelsets(const Runner& runner, const RollingContact& contact, double speed,
+                    const std::vector<RailsUnder>& rails, SteadyRunning& s) {
+  constexpr double kMost = .1;  // of a wheelset's spin
+  constexpr int kBisections = 40;
+  std::size_t set = 0;
+  for (std::size_t b = 0; b < runner.bodies.size(); ++b) {
+    if (!runner.bodies[b].is_wheelset()) continue;
+    double& spin = s.rate[first_of(b) + index_of(BodyMotion::pitch)];
+    const double most = kMost * std::fabs(speed) / runner.bodies[b].radius;
+    double low = -most, high = most;
+    for (int i = 0; i < kBisections; ++i) {
+      spin = .5 * (low + high);
+      double moment = 0.;
+      for (const WheelForce& wheel : wheel_forces(runner, contact, speed, s, rails)[set])
+        moment += wheel.generalised[index_of(BodyMotion::pitch)];
+      (moment > 0. ? low : high) = spin;
+    }
+    ++set;
+  }
+}
+
 /// A moment about the axle stops a spin's motion, so its rate is sought in place of its angle.
 bool is_spin(const Runner& runner, Index k) {
   return k % kMotions == index_of(BodyMotion::pitch) &&
          runner.bodies[static_cast<std::size_t>(k / kMotions)].is_wheelset();
 }
 
-/// Newton's step of all coordinates but the first, then of the tensions of rods.
-VectorXd step_with_rods(const MatrixXd& J, const MatrixXd& rods, const VectorXd& left,
-                        const VectorXd& u) {
-  const Index n = J.rows() - 1, held = rods.cols();
-  const double scale = J.diagonal().cwiseAbs().maxCoeff();
-  MatrixXd A = MatrixXd::Zero(n + held, n + held);
-  A.topLeftCorner(n, n) = J.bottomRightCorner(n, n);
-  A.topRightCorner(n, held) = scale * rods.bottomRows(n);
-  A.bottomLeftCorner(held, n) = scale * rods.bottomRows(n).transpose();
-  VectorXd b(n + held);
-  b.head(n) = left.tail(n);
-  b.tail(held) = -scale * (rods.transpose() * u);
-  VectorXd step = A.partialPivLu().solve(b);
-  step.tail(held) *= scale;
-  return step;
-}
+/// Newton's steps of all coordinates but the first, then of the tensions of rods.
+class StepWithRods {
+ public:
+  StepWithRods(const MatrixXd& J, const MatrixXd& rods)
+      : rods_(rods), scale_(J.diagonal().cwiseAbs().maxCoeff()) {
+    const Index n = J.rows() - 1, held = rods.cols();
+    MatrixXd A = MatrixXd::Zero(n + held, n + held);
+    A.topLeftCorner(n, n) = J.bottomRightCorner(n, n);
+    A.topRightCorner(n, held) = scale_ * rods.bottomRows(n);
+    A.bottomLeftCorner(held, n) = scale_ * rods.bottomRows(n).transpose();
+    solver_.compute(A);
+  }
+  VectorXd step(const VectorXd& left, const VectorXd& u) const {
+    const Index n = left.size() - 1, held = rods_.cols();
+    VectorXd b(n + held);
+    b.head(n) = left.tail(n);
+    b.tail(held) = -scale_ * (rods_.transpose() * u);
+    VectorXd step = solver_.solve(b);
+    step.tail(held) *= scale_;
+    return step;
+  }
+
+ private:
+  const MatrixXd& rods_;
+  double scale_;
+  Eigen::PartialPivLU<MatrixXd> solver_;
+};
 
 }  // namespace
 
@@ -135,19 +186,22 @@ SteadyRunning steady_running(const Runner& runner, const RunnerMatrices& m,
   };
   // Contacts that press give Newton's method its way back.
   for (int i = 0; i < 20 && !touches(s); ++i) sink_wheelsets(runner, 2e-4, s.displacement);
+  const auto left_at = [&](const SteadyRunning& at, const VectorXd& force) -> VectorXd {
+    return m.rest + force + stop_forces(m, at.displacement) - m.stiffness * at.displacement -
+           m.damping * at.rate - m.rods * at.tension;
+  };
+  roll_wheelsets(runner, contact, speed, rails, s);
   constexpr int kCap = 60, kHalvings = 12;
   for (int i = 0; i < kCap; ++i) {
     const Contacts c = contacts_at(runner, contact, speed, s.displacement, s.rate, rails);
-    const MatrixXd stiffness = stiffness_at(m, s.displacement);
-    const VectorXd left = m.rest + c.force + stop_forces(m, s.displacement) -
-                          m.stiffness * s.displacement - m.damping * s.rate - m.rods * s.tension;
-    MatrixXd J = stiffness - c.by_displacement;
+    const VectorXd left = left_at(s, c.force);
+    MatrixXd J = stiffness_at(m, s.displacement) - c.by_displacement;
     for (Index k = 0; k < n; ++k)
       if (is_spin(runner, k)) J.col(k) = m.damping.col(k) - c.by_rate.col(k);
     s.resistance = -left[0];
-    const VectorXd all = step_with_rods(J, m.rods, left, s.displacement);
-    const VectorXd step = all.head(n - 1);
-    const double change = step.cwiseAbs().maxCoeff();
+    const StepWithRods newton(J, m.rods);
+    const VectorXd step = newton.step(left, s.displacement);
+    const double change = step.head(n - 1).cwiseAbs().maxCoeff();
     if (!std::isfinite(change)) break;
     SteadyRunning next = s;
     double part = 1.;
@@ -155,8 +209,13 @@ SteadyRunning steady_running(const Runner& runner, const RunnerMatrices& m,
       next = s;
       for (Index k = 1; k < n; ++k)
         (is_spin(runner, k) ? next.rate : next.displacement)[k] += part * step[k - 1];
-      next.tension += part * all.tail(m.rods.cols());
-      if (touches(next)) break;
+      next.tension += part * step.tail(m.rods.cols());
+      if (!touches(next)) continue;
+      // The step that would follow with the same derivatives is shorter (Deuflhard).
+      const VectorXd force = forces_at(runner, contact, speed, next.displacement, next.rate, rails);
+      const double following =
+          newton.step(left_at(next, force), next.displacement).head(n - 1).norm();
+      if (following <= (1. - .25 * part) * step.head(n - 1).norm()) break;
     }
     s = std::move(next);
     if (change < 1e-11 && touches(s)) return s;

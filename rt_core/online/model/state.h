@@ -82,7 +82,7 @@ inline std::int64_t newton_doubles(const Model& model) noexcept {
   return most;
 }
 /// Numbers that hold where a wheel touches by its profile, a ProfileWheel (profile_contact.h).
-inline constexpr std::int64_t kProfileWheelDoubles = 216;
+inline constexpr std::int64_t kProfileWheelDoubles = 440;
 /// Those of all wheels of rail vehicles; 0 where all treads are cones.
 inline std::int64_t profile_doubles(const Model& model) noexcept {
   bool any = false;

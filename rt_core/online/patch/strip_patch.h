@@ -7,6 +7,8 @@ inline constexpr double kVirtualPart = .55;
 /// The law's modulus over that of the bodies. It is calibrated: with it the mean approach on 24
 /// patches of 10 kN is that of the half-space (docs/wheel-rail.md has others to compare with).
 inline constexpr double kOfModulus = .979;
+/// Which minima of the gap share a patch does not change below this depth, m.
+inline constexpr double kLeastPatchDepth = 3e-5;
 
 /// A contact patch under an approach: its force and its shape.
 struct PatchForce {
@@ -56,5 +58,41 @@ PatchForce patch_force(const StripPatch& patch, double approach) noexcept;
 
 /// Where a patch holds its approach, of a patch whose hold is not known yet.
 PatchHold hold_of(const StripPatch& patch, double approach) noexcept;
+
+/// How far two neighbouring minima of the gap are patches by themselves: 0 where the ridge between
+/// them is well within the deeper one's overlap, or no higher than the higher minimum, 1 away from
+/// that.
+/// @param deeper, higher, ridge  gaps, m, negative where the bodies overlap
+/// @param least_depth            above 0, m: a deeper one of less depth is looked at as if it had
+/// it
+inline double patches_apart(double deeper, double higher, double ridge,
+                            double least_depth) noexcept {
+  constexpr double kPassage = .25;  // of an overlap, to both sides, and of a depth
+  constexpr double kLeast = 1e-6;   // m: the force of a patch of less depth does not matter
+  const auto smooth = [](double part) noexcept -> double {
+    return !(part > 0.) ? 0. : part < 1. ? part * part * (3. - 2. * part) : 1.;
+  };
+  const auto depth = [](double gap, double least) noexcept -> double {
+    return -gap > least ? -gap : least;
+  };
+  const double overlap = kVirtualPart * depth(deeper, least_depth);
+  return smooth((ridge - deeper - (1. - kPassage) * overlap) / (2. * kPassage * overlap)) *
+         smooth((ridge - higher) / (kPassage * depth(higher, kLeast)));
+}
+
+/// Calls `of(first, last, share)` for each run of neighbouring minima that has a share above 0 as
+/// one patch. The shares of the runs that hold a minimum have a sum of 1.
+/// @param apart  apart(i): patches_apart() of minima i - 1 and i; not called with 0
+template <class Apart, class Of>
+void for_each_share(int count, const Apart& apart, const Of& of) {
+  for (int first = 0; first < count; ++first) {
+    double share = first > 0 ? apart(first) : 1.;
+    for (int last = first; last < count && share > 0.; ++last) {
+      const double beyond = last + 1 < count ? apart(last + 1) : 1.;
+      if (share * beyond > 0.) of(first, last, share * beyond);
+      share *= 1. - beyond;
+    }
+  }
+}
 
 }  // namespace railstep

@@ -148,6 +148,7 @@ void look(const LowestLine& line, Search& search) noexcept {
 struct Minimum {
   int at, first, last;
   double place, gap;  // m, between strips too
+  double apart;       // 1: a zone by itself; 0: one with the minimum before
 };
 
 /// The minimum about a strip of the search, by the parabola through three finer ones.
@@ -160,7 +161,7 @@ Minimum minimum_at(const LowestLine& line, const Search& search, int i) noexcept
   int least = 0;
   for (int k = 1; k < kFineStrips; ++k)
     if (gap[k] < gap[least]) least = k;
-  Minimum found{i, 0, kSearchStrips - 1, s[least], gap[least]};
+  Minimum found{i, 0, kSearchStrips - 1, s[least], gap[least], 1.};
   if (least == 0 || least == kFineStrips - 1) return found;
   const double half = .5 * (gap[least + 1] - gap[least - 1]),
                bend = gap[least + 1] - 2. * gap[least] + gap[least - 1];
@@ -182,6 +183,13 @@ int ridge_between(const Search& search, int from, int to) noexcept {
   return highest;
 }
 
+double apart(const Search& search, const Minimum& a, const Minimum& b,
+             double least_depth) noexcept {
+  const Minimum &deeper = a.gap < b.gap ? a : b, &higher = a.gap < b.gap ? b : a;
+  const double ridge = search.gap[ridge_between(search, a.at, b.at)];
+  return patches_apart(deeper.gap, search.gap[higher.at], ridge, least_depth);
+}
+
 int find_minima(const LowestLine& line, const Search& search, double least_depth,
                 Minimum* found) noexcept {
   int count = 0, lowest = 0;
@@ -197,10 +205,9 @@ int find_minima(const LowestLine& line, const Search& search, double least_depth
     const Minimum own = minimum_at(line, search, i);
     if (count > 0) {
       Minimum& last = found[count - 1];
-      const double deeper = own.gap < last.gap ? own.gap : last.gap;
       const int ridge = ridge_between(search, last.at, i);
-      if (gap[ridge] < level_of(deeper, least_depth) || count == kMostMinima) {
-        if (own.gap < last.gap) last = {i, last.first, last.last, own.place, own.gap};
+      if (!(apart(search, last, own, least_depth) > 0.) || count == kMostMinima) {
+        if (own.gap < last.gap) last = {i, last.first, last.last, own.place, own.gap, 1.};
         continue;
       }
       last.last = ridge;
@@ -214,7 +221,7 @@ int find_minima(const LowestLine& line, const Search& search, double least_depth
 
 /// Leaves the deepest minima, in their order.
 int leave_deepest(Minimum* found, int count) noexcept {
-  while (count > kMostZones) {
+  while (count > kMostLeast) {
     int highest = 0;
     for (int i = 1; i < count; ++i)
       if (found[i].gap > found[highest].gap) highest = i;
@@ -222,6 +229,16 @@ int leave_deepest(Minimum* found, int count) noexcept {
     --count;
   }
   return count;
+}
+
+/// Minima from one to another as one.
+Minimum as_one(const Minimum* from, const Minimum* to) noexcept {
+  Minimum one = *from;
+  for (const Minimum* own = from + 1; own <= to; ++own)
+    if (own->gap < one.gap) one = *own;
+  one.first = from->first;
+  one.last = to->last;
+  return one;
 }
 
 /// Places to both sides of another with gaps above a level, next to some below it: between the
@@ -309,8 +326,16 @@ int find_zones(const ProfilePair& pair, const WheelsetPlace& at, double least_de
   look(line, search);
   Minimum found[kMostMinima];
   const int count = leave_deepest(found, find_minima(line, search, least_depth, found));
-  for (int i = 0; i < count; ++i) fill_zone(line, search, found[i], least_depth, zone[i]);
-  return count;
+  for (int i = 1; i < count; ++i)
+    found[i].apart = apart(search, found[i - 1], found[i], least_depth);
+  int zones = 0;
+  for_each_share(
+      count, [&](int i) noexcept { return found[i].apart; },
+      [&](int first, int last, double share) noexcept {
+        fill_zone(line, search, as_one(found + first, found + last), least_depth, zone[zones]);
+        zone[zones++].share = share;
+      });
+  return zones;
 }
 
 PressedPoint pressed_point(const ProfilePair& pair, const WheelsetPlace& at, double s) noexcept {

@@ -35,7 +35,9 @@ struct WheelsetPlace {
 
 inline constexpr int kSearchStrips = 128;  // at which a wheel is looked at
 inline constexpr int kZoneStrips = 25;     // of one zone
-inline constexpr int kMostZones = 3;       // of a wheel: tread, throat and flange
+inline constexpr int kMostLeast = 3;       // least gaps of a wheel: tread, throat and flange
+/// Each of them, two or three that are next to each other as one.
+inline constexpr int kMostZones = kMostLeast * (kMostLeast + 1) / 2;
 
 /// Where a wheel and its rail overlap, or are next to do so.
 struct WheelZone {
@@ -44,6 +46,7 @@ struct WheelZone {
   double cosine;           // of the angle between the contact plane and the rail's level
   double cosine_of_wheel;  // of the angle between the wheel's profile there and its axle
   bool at_edge;            // the overlap reaches the end of a profile
+  double share;            // of its force that the wheel has, above 0, 1 at most
   double gap[kZoneStrips];
   StripPatch patch;  // without its gaps; see patch_of()
 };
@@ -55,11 +58,12 @@ inline StripPatch patch_of(const WheelZone& zone) noexcept {
   return patch;
 }
 
-/// Finds the zones of a wheel, at most kMostZones, those of least gap, in the order of s. A yawed
+/// Finds the zones of a wheel about its least gaps, kMostLeast at most, in the order of s. A yawed
 /// wheel touches where its normal has no part along the rail: before the axle by r (roll - F') yaw,
 /// F' the slope of the wheel's growth. Gaps have the yaw to second order, slopes to first order.
-/// Minima of the gap are one zone where the deeper one's overlap, by the law of patches, goes
-/// beyond the ridge between them.
+/// Two least gaps are one zone where the deeper one's overlap, by the law of patches, goes beyond
+/// the ridge between them. Where it nearly does so, or the ridge is hardly above the higher one,
+/// the wheel has shares of both of them and of them as one, so that its force does not leap.
 /// @param least_depth  upright, m: zones of less depth are looked at as if they were that deep
 /// @param zone  [kMostZones] out
 /// @returns how many zones there are: one at least where the wheel is above its rail, 0 beside it

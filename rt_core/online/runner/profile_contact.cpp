@@ -4,9 +4,9 @@ namespace railstep {
 
 namespace {
 
-constexpr double kLeastDepth = 3e-5;  // m, up to which strips of a patch reach at least
-constexpr double kFarOff = 2e-4;      // m
-constexpr double kMostDepth = 3e-3;   // m: a wheel that is deeper is not on the rail but in it
+constexpr double kLeastDepth = kLeastPatchDepth;  // up to which strips of a patch reach at least
+constexpr double kFarOff = 2e-4;                  // m
+constexpr double kMostDepth = 3e-3;  // m: a wheel that is deeper is not on the rail but in it
 
 struct SectionVector {
   double y, z;
@@ -69,14 +69,18 @@ void fill_creep_patch(const RollingContact& c, const PatchForce& force, double d
 }
 
 /// Divides the coefficients of a wheel among its patches by their normal forces.
-/// @param normal  [patches] N
+/// @param normal  [patches] N, those that the wheel has
 void share_coefficients(const RollingContact& c, const double* normal,
                         ProfileWheel& wheel) noexcept {
-  double all = 0.;
-  for (int i = 0; i < wheel.patches; ++i) all += normal[i];
+  double all = 0., shares = 0.;
   for (int i = 0; i < wheel.patches; ++i) {
+    all += normal[i];
+    shares += wheel.patch[i].zone.share;
+  }
+  for (int i = 0; i < wheel.patches; ++i) {
+    const double share = wheel.patch[i].zone.share;
     wheel.patch[i].creep = c.creep.patch;
-    wheel.patch[i].creep.shear *= all > 0. ? normal[i] / all : 1. / wheel.patches;
+    wheel.patch[i].creep.shear *= all > 0. ? normal[i] / (share * all) : 1. / shares;
   }
 }
 
@@ -112,7 +116,9 @@ void find_profile_wheel(const RollingContact& c, double radius, double side, con
     const double part = zone[i].depth / kLeastDepth;
     const double depth = part > 1. ? zone[i].depth : kLeastDepth;
     const PatchForce own = patch_force(patch_of(patch.zone), depth);
-    normal[wheel.patches++] = part > 1. ? own.normal : part > 0. ? own.normal * part : 0.;
+    normal[wheel.patches++] = zone[i].share * (part > 1.   ? own.normal
+                                               : part > 0. ? own.normal * part
+                                                           : 0.);
     fill_creep_patch(c, own, depth, patch);
     fill_patch_rows(c.profiles, middle, side, axle,
                     pressed_point(pair, place, zone[i].s + zone[i].cosine_of_wheel * own.centre),
@@ -143,12 +149,21 @@ void find_slopes(const WheelRows<double>& r, double across_turned, double stiffn
   }
 }
 
-void add(const WheelForce& own, WheelForce& sum) noexcept {
+void take_share(double share, ContactSlopes& slopes) noexcept {
+  for (int k = 0; k < 3; ++k) {
+    for (double& by : slopes.by_motion[k]) by *= share;
+    for (double& by : slopes.by_rate[k]) by *= share;
+    slopes.by_section[k] *= share;
+    slopes.by_section_rate[k] *= share;
+  }
+}
+
+void add(double share, const WheelForce& own, WheelForce& sum) noexcept {
   if (own.depth > sum.depth) sum.depth = own.depth;
-  sum.normal += own.normal;
-  sum.on_section += own.on_section;
-  sum.creep_power += own.creep_power;
-  for (int k = 0; k < 6; ++k) sum.generalised[k] += own.generalised[k];
+  sum.normal += share * own.normal;
+  sum.on_section += share * own.on_section;
+  sum.creep_power += share * own.creep_power;
+  for (int k = 0; k < 6; ++k) sum.generalised[k] += share * own.generalised[k];
 }
 
 }  // namespace
@@ -173,16 +188,19 @@ WheelForce profile_force(const RollingContact& c, const ProfileWheel& wheel, dou
     rows.across_spin += patch.across_turned * yawed;
     const Slip<double> slip = slip_of(rows, v, speed, radius, rail);
     const PatchForce force = patch_force(patch_of(patch.zone), rows.depth);
+    const double share = patch.zone.share;
     const double beyond = rows.depth - patch.zone.patch.hold.gap;
     RollingPatch grown = patch.creep;
     if (grown.growth > 0. && force.normal > 0.)
       grown.growth = .5 * force.normal / (force.stiffness * beyond);
     const ContactCreep creep = contact_creep(c.creep, grown, friction_of(c.creep, side),
                                              {beyond, force.normal}, slip, speed);
-    stiffness[i] = force.stiffness;
-    if (slopes != nullptr)
+    stiffness[i] = share * force.stiffness;
+    if (slopes != nullptr) {
       find_slopes(rows, patch.across_turned, force.stiffness, spin, creep, slopes[i]);
-    add(wheel_force(rows, force.normal, slip, creep), sum);
+      take_share(share, slopes[i]);
+    }
+    add(share, wheel_force(rows, force.normal, slip, creep), sum);
     ++touching;
     sliding += creep.slides ? 1 : 0;
   }

@@ -12,7 +12,7 @@ using namespace railstep;
 
 namespace {
 
-constexpr double kLeastDepth = 5e-6;  // m
+constexpr double kLeastDepth = kLeastPatchDepth;
 const Elastic kSteel;
 
 struct Forces {
@@ -25,8 +25,10 @@ Forces forces_of(const WheelRail& profiles, const ProfilePair& pair, const Wheel
   Forces sum;
   double normals = 0.;
   for (int i = 0; i < find_zones(pair, at, kLeastDepth, zone); ++i) {
-    const PatchForce force = patch_force(patch_of(zone[i]), zone[i].depth);
+    PatchForce force = patch_force(patch_of(zone[i]), zone[i].depth);
     if (!(force.normal > 0.)) continue;
+    force.normal *= zone[i].share;
+    force.stiffness *= zone[i].share;
     CHECK_FALSE(zone[i].at_edge);
     const double s = zone[i].s + zone[i].cosine_of_wheel * force.centre;
     const double cosine = zone[i].cosine;

@@ -244,6 +244,38 @@ TEST_CASE("slopes of a patch are those of its forces", "[profile_contact]") {
   }
 }
 
+TEST_CASE("the height of a loaded wheel does not leap as it shifts", "[profile_contact]") {
+  // Throat and tread become one patch, or two, at shifts of 5 to 6 mm.
+  const Pair pair(CreepLaw::she);
+  const auto height = [&](double shift, double load) {
+    double low = -2e-3, high = 4e-3;
+    for (int i = 0; i < 45; ++i) {
+      const double sunk = .5 * (low + high), at[6] = {0., shift, -sunk, 0., 0., 0.};
+      ProfileWheel wheel;
+      find_profile_wheel(pair.contact, kWheel, -1., {at, 0.}, wheel);
+      double sum = 0.;
+      for (int i_patch = 0; i_patch < wheel.patches; ++i_patch) {
+        const ProfilePatch& patch = wheel.patch[i_patch];
+        sum += patch.zone.share * patch.rows.n_z *
+               patch_force(patch_of(patch.zone), patch.rows.depth).normal;
+      }
+      (sum > load ? high : low) = sunk;
+    }
+    return .5 * (low + high);
+  };
+  for (const auto& [load, most] : {std::pair{55e3, 5e-8}, std::pair{100e3, 2e-6}}) {
+    double before = 0., last = 0., worst = 0.;
+    for (int i = 0; i < 900; ++i) {
+      const double own = height(-6.2e-3 + 2e-6 * i, load);
+      if (i > 1) worst = std::max(worst, std::fabs(own - 2. * last + before));
+      before = last;
+      last = own;
+    }
+    INFO(1e-3 * load << " kN");
+    CHECK(worst < most);
+  }
+}
+
 TEST_CASE("coefficients that are given are divided among the patches of a wheel",
           "[profile_contact]") {
   Pair pair(CreepLaw::linear);
@@ -265,11 +297,14 @@ TEST_CASE("coefficients that are given are divided among the patches of a wheel"
     }
     REQUIRE(wheel.patches > 0);
     double shares = 0.;
-    for (int i = 0; i < wheel.patches; ++i) shares += wheel.patch[i].creep.shear;
+    for (int i = 0; i < wheel.patches; ++i)
+      shares += wheel.patch[i].zone.share * wheel.patch[i].creep.shear;
     CHECK(shares == Approx(1.).epsilon(1e-12));
     two += wheel.patches == 2 ? 1 : 0;
+    double deepest = -1.;
+    for (int i = 0; i < wheel.patches; ++i) deepest = std::max(deepest, wheel.patch[i].rows.depth);
     for (int i = 0; i < wheel.patches; ++i)
-      if (wheel.patches > 1 && !(wheel.patch[i].rows.depth > 0.))
+      if (deepest > 0. && !(wheel.patch[i].rows.depth > 0.))
         CHECK(wheel.patch[i].creep.shear == 0.);
   }
   CHECK(two > 20);
