@@ -45,8 +45,9 @@ std::vector<TrackForm> forms() {
 struct Partner {
   const char* name;
   Changes words;
-  /// Rigid rails do not give way, and all bays of a track without end are alike.
-  enum Needs { nothing, rails, ends } needs;
+  /// Rigid rails do not give way, all bays of a track without end are alike, and it goes along with
+  /// vehicles of a given speed.
+  enum Needs { nothing, rails, ends, standing } needs;
 };
 
 const std::vector<Partner> kPartners = {
@@ -97,6 +98,7 @@ const std::vector<Partner> kPartners = {
       "joint=[{name=\"pin\",kind=\"revolute\",between=[\"rail right\",\"bar\"],"
       "point_m=[24.0,-0.75,-0.1],axis=[1,0,0]}]"},
      Partner::ends},
+    {"a drive by force", {"vehicle[0].drive=\"force\""}, Partner::standing},
     {"rails with a cant", {"rail.cant=\"1:40\""}, Partner::rails},
     {"rails that differ", {"rail.right.young_pa=1.9e11"}, Partner::rails},
     {"unevenness",
@@ -215,8 +217,10 @@ void for_each_cell(Visit visit) {
   for (const TrackForm& form : forms())
     for (const Partner& partner : kPartners) {
       const std::string name = form.name;
-      if (partner.needs != Partner::nothing && name == "rigid") continue;
-      if (partner.needs == Partner::ends && name.find("with ends") == std::string::npos) continue;
+      const bool rigid = name == "rigid", ends = name.find("with ends") != std::string::npos;
+      if (partner.needs == Partner::rails && rigid) continue;
+      if (partner.needs == Partner::ends && !ends) continue;
+      if (partner.needs == Partner::standing && !ends && !rigid) continue;
       INFO(partner.name << " on a track: " << form.name);
       try {
         visit(form, partner);

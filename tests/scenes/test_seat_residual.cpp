@@ -42,7 +42,7 @@ std::vector<Flexibility> flexibility_of(const Settings& changes) {
     WheelSeatRow seat[kWheelSeatRows];
     RailForce place[kWheelSeatRows];
     SeatMotions motions;
-    const double x = element_place(model, model.runner[0], 0, 0, 0.) + .053 * at_place;
+    const double x = element_place(model, model.runner[0], 0, {0, 0.}) + .053 * at_place;
     locate_wheel_seat(model, at, model.runner[0], x, side, motions, seat, place);
     REQUIRE(seat[0].on_rail);
     Flexibility& own = found.emplace_back(Flexibility{Matrix3d::Zero(), Matrix3d::Zero()});

@@ -36,10 +36,10 @@ CouplerEnd end_of(const Table& t, const std::string& name,
 }
 
 void check_alike(const Table& t, const RailVehicleScene& a, const RailVehicleScene& b) {
-  if (a.speed != b.speed || a.speeds != b.speeds)
+  if (a.speed != b.speed || a.speeds != b.speeds || a.rolls_freely != b.rolls_freely)
     t.refuse("between", "E-COUPLER-02",
-             fmt::format("the speeds of {} and {} differ; expected one speed of all vehicles that "
-                         "are coupled",
+             fmt::format("the speeds of {} and {} differ, or their drives; expected one speed and "
+                         "drive of all vehicles that are coupled",
                          a.name, b.name));
   if (!has_profiles(a.contact) && a.contact.hertz != b.contact.hertz)
     t.refuse("between", "E-COUPLER-03",

@@ -68,6 +68,21 @@ RollingContact read_cones(const Table& t, const Scene& scene, double radius) {
   return c;
 }
 
+/// Length in which creep follows slip at a standstill: there a contact is Mindlin's spring, of
+/// 4 G a / (2 - nu), and its coefficient along the rail over the length is that stiffness.
+double relaxation_length(const RollingContact& c, double radius, double load,
+                         const RailScene& steel) {
+  const HertzContact patch =
+      hertz_contact(radius, steel.crown_radius, steel.young, steel.poisson, load);
+  const double shear = steel.young / (2. * (1. + steel.poisson));
+  const RollingPatch& given = c.creep.patch;
+  const double along = given.growth == 0.
+                           ? given.shear * given.half_length * given.half_width * given.kalker.c11
+                           : shear * patch.half_along * patch.half_across *
+                                 kalker(patch.half_along / patch.half_across, steel.poisson).c11;
+  return along * (2. - steel.poisson) / (4. * shear * patch.half_along);
+}
+
 double first_radius(const Runner& runner) {
   for (const RunnerBody& body : runner.bodies)
     if (body.is_wheelset()) return body.radius;
@@ -116,6 +131,9 @@ void read_rolling(const Table& root, const Scene& scene, RailVehicle& vehicle) {
     vehicle.tables = std::move(profiles.tables);
   }
   vehicle.contact.creep = read_creep(t, vehicle.contact, radius, scene.rail);
+  vehicle.contact.relaxation =
+      t.number("relaxation_m", between(0.0, 1.0),
+               relaxation_length(vehicle.contact, radius, mean_load(vehicle.runner), scene.rail));
 }
 
 Runner read_runner_of(const Table& t) {
@@ -177,6 +195,15 @@ RailVehicleScene read_rail_vehicle(const Table& root, const Table& t, const Scen
   for (const RunnerStop& stop : v.runner.stops) v.bump_stops.push_back(v.name + "." + stop.name);
   read_rolling(root, scene, v);
   v.start = t.number("start_m", between(-1e6, 1e6), 0.0);
+  v.rolls_freely = t.has("drive") && t.choice("drive", {"speed", "force"}) == 1;
+  if (v.rolls_freely && t.has("speed_table"))
+    t.refuse("speed_table", "E-VEHICLE-28",
+             "the speed of a vehicle with drive = \"force\" follows from its forces; expected "
+             "speed_m_per_s, from which on it rolls");
+  if (v.rolls_freely && scene.track.endless && !scene.track.rigid)
+    t.refuse("drive", "E-VEHICLE-29",
+             "a track without end goes along with vehicles of one given speed; expected drive = "
+             "\"speed\", or a track with ends or of form \"rigid\"");
   const SpeedScene speed = read_speed(t, std::nullopt);
   v.speed = speed.speed;
   v.speeds = speed.speeds;

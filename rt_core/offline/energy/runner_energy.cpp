@@ -11,6 +11,10 @@
 namespace railstep {
 namespace {
 
+AlongTrack along_track(const RunnerModel& runner, const State& at) {
+  return {at.steps, 0., ahead_of(runner, at.u + runner.first)};
+}
+
 double along(const Model& model, const WheelSeatRow& seat, const Configuration& at) {
   double sum = 0.;
   for (std::int32_t l = 0; l < model.lines; ++l) sum += motion(model.line[l], seat.row, at);
@@ -23,8 +27,9 @@ void stand_on_seat(const Model& model, const RunnerModel& runner, int wheelset, 
   const Configuration now{at.u, {at.u, at.v}, track_offset(model, at.steps)};
   SeatMotions seats;
   RailForce place[kWheelSeatRows];
-  locate_wheel_seat(model, now, runner, element_place(model, runner, wheelset, at.steps, 0.), side,
-                    seats, wheel.seat, place);
+  locate_wheel_seat(model, now, runner,
+                    element_place(model, runner, wheelset, along_track(runner, at)), side, seats,
+                    wheel.seat, place);
   std::fill_n(wheel.residual, kWheelSeatRows, 0.);
   std::fill_n(wheel.moved, kWheelSeatRows, 0.);
   if (!wheel.seat[0].on_rail) return;
@@ -46,7 +51,7 @@ std::vector<RailForce> wheel_forces_on_rails(const Model& model, const State& at
     for (int i = 0; i < runner.wheelsets; ++i)
       for (int side = 0; side < 2; ++side)
         forces.push_back(rail_force(model, runner.load_point[side],
-                                    element_place(model, runner, i, at.steps, 0.),
+                                    element_place(model, runner, i, along_track(runner, at)),
                                     -wheel_force_of(at, runner.first_wheelset + i, side)[2]));
   }
   return forces;
@@ -205,7 +210,7 @@ StandingRunner standing_runner(const Model& model, const RunnerModel& runner, co
   const Configuration moving{at.v, {rates.real.data(), rates.imaginary.data()}};
   for (int i = 0; i < runner.wheelsets; ++i) {
     RailsUnder slope;
-    const RailsUnder uneven = rails_under(model, runner, i, at.steps, 0., &slope);
+    const RailsUnder uneven = rails_under(model, runner, i, along_track(runner, at), &slope);
     const std::int32_t first = runner.first + runner.wheelset[i].first;
     auto& wheels = standing.wheels.emplace_back();
     for (int side = 0; side < 2; ++side) {
@@ -222,14 +227,16 @@ StandingRunner standing_runner(const Model& model, const RunnerModel& runner, co
       else if (wheel.seat[0].on_rail)
         rate = {along(model, wheel.seat[0], moving), along(model, wheel.seat[1], moving),
                 along(model, wheel.seat[2], moving)};
-      rate.z += standing.speed * slope.z[side];
+      rate.z += (standing.speed + ahead_of(runner, at.v + runner.first)) * slope.z[side];
       under.roll[side] = wheel.moved[2];
       double over[kMotions];
       place_over_rail(under, side, at.u + first, over);
       const OverRail place{over, under.roll[side]};
       const double radius = runner.wheelset[i].radius, sign = side == 0 ? 1. : -1.;
+      const Rolling rolling = rolling_of(runner, i, standing.speed, at.v + first,
+                                         creepage_of(at, runner.first_wheelset + i, side), 0.);
       wheel.force =
-          force_on_wheel(runner.contact, radius, sign, standing.speed, place, at.v + first, rate);
+          force_on_wheel(runner.contact, radius, sign, rolling, place, at.v + first, rate);
       wheel.strain = strain_of(runner.contact, radius, sign, place, wheel.force);
     }
   }

@@ -95,6 +95,7 @@ struct RailVehicle {
   RollingContact contact = {};
   std::shared_ptr<const ContactTables> tables = nullptr;  // to which its profiles point
   double start = 0., speed = 0.;                          // of its origin, m, m/s
+  bool rolls_freely = false;                              // from that speed on; has no `speeds`
   std::vector<double> speeds = {};                        // t (s), m/s, ...; empty: `speed`
   double gravity = kGravity;                              // m/s2
   std::vector<OuterForce> forces = {};

@@ -9,18 +9,18 @@ namespace railstep {
 namespace {
 
 /// The matrices with a coordinate without mass for each damper that is in series with a spring. The
-/// first body's x is held, then the lengths of the rods.
-SuspendedMatrices extended(const RunnerMatrices& m) {
+/// first body's x is held, if it does not roll freely, then the lengths of the rods.
+SuspendedMatrices extended(const RunnerMatrices& m, bool rolls_freely) {
   const Eigen::Index n = m.mass.size(), series = static_cast<Eigen::Index>(m.series.size());
   SuspendedMatrices e{Eigen::VectorXd::Zero(n + series), Eigen::VectorXd::Zero(n + series),
                       Eigen::MatrixXd::Zero(n + series, n + series),
                       Eigen::MatrixXd::Zero(n + series, n + series),
-                      Eigen::MatrixXd::Zero(n + series, 1 + m.rods.cols())};
+                      Eigen::MatrixXd::Zero(n + series, (rolls_freely ? 0 : 1) + m.rods.cols())};
   e.mass.head(n) = m.mass;
   e.rest.head(n) = m.rest;
   e.damping.topLeftCorner(n, n) = m.damping;
   e.stiffness.topLeftCorner(n, n) = m.stiffness;
-  e.held(0, 0) = 1.;
+  if (!rolls_freely) e.held(0, 0) = 1.;
   e.held.topRightCorner(n, m.rods.cols()) = m.rods;
   for (Eigen::Index i = 0; i < series; ++i) {
     const RunnerMatrices::Series& own = m.series[static_cast<std::size_t>(i)];
@@ -129,7 +129,7 @@ void PackedModel::add_runner(const Track& track, const RailVehicle& vehicle) {
            "most " +
                std::to_string(kMaxRunners));
   const RunnerMatrices matrices = runner_matrices(vehicle.runner, vehicle.gravity);
-  const SuspendedMatrices m = extended(matrices);
+  const SuspendedMatrices m = extended(matrices, vehicle.rolls_freely);
   const auto n = static_cast<std::int32_t>(m.mass.size());
   if (n > kMaxRunnerUnknowns)
     refuse("E-PACK-55", "a rail vehicle has " + std::to_string(n) +
@@ -143,18 +143,22 @@ void PackedModel::add_runner(const Track& track, const RailVehicle& vehicle) {
   add_stops(matrices, model_, packed);
   add_rods(matrices, model_, packed);
   packed.start = model_.lines > 0 ? model_.endless.origin + vehicle.start : vehicle.start;
-  packed.travel = keep_travel(vehicle.speed, vehicle.speeds);
+  packed.rolls_freely = vehicle.rolls_freely ? 1 : 0;
+  packed.start_speed = vehicle.rolls_freely ? vehicle.speed : 0.;
+  packed.travel = keep_travel(vehicle.rolls_freely ? 0. : vehicle.speed, vehicle.speeds);
   packed.contact = vehicle.contact;
   keep_profiles(packed.contact.profiles.pair);
-  SuspendedResponse step = add_suspended(m, vehicle.forces, packed);
+  const SuspendedResponse step = add_suspended(m, vehicle.forces, packed);
   const Eigen::MatrixXd stops = stop_rows(matrices, n);
   const Eigen::MatrixXd compliance =
       model_.scheme.theta * interface_compliance(packed, step.inverse, stops);
   packed.stop_row = keep(column_by_column(stops));
   packed.stop_moved = keep(column_by_column(step.inverse * stops));
   packed.rod_row = keep(column_by_column(m.held.rightCols(packed.rods)));
-  step.reaction.bottomRows(packed.rods) *= -1.;  // a tension acts against an elongation
-  packed.reaction = keep(column_by_column(step.reaction.transpose()));
+  Eigen::MatrixXd reaction = Eigen::MatrixXd::Zero(constraint_count(packed), n);
+  reaction.bottomRows(step.reaction.rows()) = step.reaction;
+  reaction.bottomRows(packed.rods) *= -1.;  // a tension acts against an elongation
+  packed.reaction = keep(column_by_column(reaction.transpose()));
   packed.compliance = keep(column_by_column(compliance));
   ++model_.runners;
   for (const int rail : {0, 1})

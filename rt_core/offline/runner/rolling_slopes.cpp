@@ -12,7 +12,7 @@ WheelForce on_cone(const RollingContact& c, double radius, double side, double s
   const WheelRows<Placed> r =
       wheel_rows(c, radius, side, Placed::along(0, u[1]), Placed::along(1, u[2]),
                  Placed::along(2, u[3]), Placed::along(3, u[5]));
-  if (!(r.depth.value > 0.)) return {r.depth.value, 0., 0., {}, 0., false};
+  if (!(r.depth.value > 0.)) return {r.depth.value, 0., 0., {}, 0., false, {}};
   const Slip<Placed> slip = slip_of(r, v, speed, radius, {});
   const Placed normal = normal_force(c, r.depth);
   const ContactCreep creep = contact_creep(

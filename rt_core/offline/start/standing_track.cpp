@@ -31,7 +31,7 @@ Seats seats_of(const Model& model, const RunnerModel& runner, const State& start
   Seats all;
   for (int i = 0; i < runner.wheelsets; ++i) {
     SeatMotions motions;
-    const double x = element_place(model, runner, i, 0, 0.) + ahead;
+    const double x = element_place(model, runner, i, {0, 0.}) + ahead;
     for (int side = 0; side < 2; ++side) {
       WheelSeatRow row[kWheelSeatRows];
       RailForce place[kWheelSeatRows];

@@ -252,7 +252,8 @@ std::vector<StartingPlace> starting_places(const Model& model) {
     add(place_of(model, i), bodies_of(model, i).travel);
   for (std::int32_t r = 0; r < model.runners; ++r)
     for (std::int32_t i = 0; i < model.runner[r].wheelsets; ++i)
-      add(model.runner[r].start + model.runner[r].wheelset[i].place, model.runner[r].travel);
+      all.push_back({model.runner[r].start + model.runner[r].wheelset[i].place,
+                     travelled(model.runner[r].travel, 0.).speed + model.runner[r].start_speed});
   return all;
 }
 
@@ -283,6 +284,26 @@ std::vector<Eigen::VectorXd> standing_line_forces(const Track& track, const Pack
 
 namespace {
 
+/// Lets a vehicle go that a drive has held at its speed: it rolls, and what held it speeds it up or
+/// slows it down as one body on wheels.
+/// @param held  force of the drive, N
+void release(const RunnerModel& runner, double held, State& state) {
+  constexpr auto x = index_of(BodyMotion::x), spin = index_of(BodyMotion::pitch);
+  double mass = 0.;
+  for (std::int32_t b = 0; b < runner.bodies; ++b) mass += runner.mass[kMotions * b + x];
+  for (std::int32_t i = 0; i < runner.wheelsets; ++i) {
+    const RunnerWheelset& set = runner.wheelset[i];
+    mass += set.spin_inertia / (set.radius * set.radius);
+  }
+  const auto set_rates = [&](std::int32_t k, double per_speed) {
+    state.v[runner.first + k] += per_speed * runner.start_speed;
+    state.a[runner.first + k] = state.g[runner.first + k] = -per_speed * held / mass;
+  };
+  for (std::int32_t b = 0; b < runner.bodies; ++b) set_rates(kMotions * b + x, 1.);
+  for (std::int32_t i = 0; i < runner.wheelsets; ++i)
+    set_rates(runner.wheelset[i].first + spin, 1. / runner.wheelset[i].radius);
+}
+
 /// Puts rail vehicles into a state. The rates are those of steady running, and those by which rails
 /// lead them on.
 void put_runners(const PackedModel& packed, const SettledRunners& now, const SettledRunners& before,
@@ -299,6 +320,10 @@ void put_runners(const PackedModel& packed, const SettledRunners& now, const Set
     const Eigen::VectorXd accelerated =
         constraint_forces_of_acceleration(model.runner[r], .5 * model.scheme.dt);
     reaction[0] = now.steady[r].resistance + accelerated[0];
+    if (model.runner[r].rolls_freely != 0) {
+      release(model.runner[r], now.steady[r].resistance, state);
+      reaction[0] = 0.;
+    }
     for (Eigen::Index i = 1; i < accelerated.size(); ++i)
       reaction[i] = now.steady[r].tension[i - 1] + accelerated[i];
     // A damper in series with a spring has no force.

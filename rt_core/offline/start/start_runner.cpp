@@ -14,6 +14,14 @@ namespace railstep {
 
 namespace {
 
+double first_speed(const RunnerModel& runner) {
+  return travelled(runner.travel, 0.).speed + runner.start_speed;
+}
+/// Where a runner is at a time from now on.
+AlongTrack place_at(const RunnerModel& runner, double time) {
+  return {0, -time, runner.start_speed * time};
+}
+
 /// The seat under one wheel, at a time from now on.
 struct StaticSeat {
   WheelSeatRow row[kWheelSeatRows];
@@ -23,8 +31,9 @@ StaticSeat seat_of(const Model& model, const RunnerModel& runner, int wheelset, 
                    const Configuration& at, double time) {
   StaticSeat seat;
   SeatMotions motions;
-  locate_wheel_seat(model, at, runner, element_place(model, runner, wheelset, 0, -time), side,
-                    motions, seat.row, seat.place);
+  locate_wheel_seat(model, at, runner,
+                    element_place(model, runner, wheelset, place_at(runner, time)), side, motions,
+                    seat.row, seat.place);
   return seat;
 }
 
@@ -36,10 +45,10 @@ double moved_by(const Model& model, const WheelSeatRow& seat, const Configuratio
 
 /// Yaw at which wheelsets roll along uneven rails, rad.
 double rolling_yaw(const Model& model, const RunnerModel& runner, int wheelset, double time) {
-  const double speed = travelled(runner.travel, 0.).speed, span = 1e-5;
+  const double speed = first_speed(runner), span = 1e-5;
   if (speed == 0. || model.signals == 0) return 0.;
   const auto middle = [&](double at) {
-    const RailsUnder under = rails_under(model, runner, wheelset, 0, -(time + at));
+    const RailsUnder under = rails_under(model, runner, wheelset, place_at(runner, time + at));
     return .5 * (under.y[0] + under.y[1]);
   };
   return (middle(span) - middle(-span)) / (2. * span * speed);
@@ -53,7 +62,7 @@ void follow_alignment(const PackedRunner& own, const Model& model, const RunnerM
   std::vector<bool> is_given(static_cast<std::size_t>(n), false);
   is_given[0] = true;  // x of the first body
   for (int i = 0; i < runner.wheelsets; ++i) {
-    const RailsUnder under = rails_under(model, runner, i, 0, -time);
+    const RailsUnder under = rails_under(model, runner, i, place_at(runner, time));
     const Eigen::Index first = runner.wheelset[i].first;
     for (int k = 0; k < kMotions; ++k) is_given[static_cast<std::size_t>(first + k)] = true;
     given[first + index_of(BodyMotion::y)] = .5 * (under.y[0] + under.y[1]);
@@ -96,7 +105,7 @@ SettledRunners runners_on_even_rails(const PackedModel& packed) {
   const Model& model = packed.model();
   for (std::int32_t r = 0; r < model.runners; ++r) {
     const PackedRunner& own = packed.runners()[static_cast<std::size_t>(r)];
-    const double speed = travelled(model.runner[r].travel, 0.).speed;
+    const double speed = first_speed(model.runner[r]);
     settled.steady.push_back(
         steady_running(own.vehicle.runner, own.matrices, own.vehicle.contact, speed));
     for (const auto& wheels :
@@ -157,7 +166,7 @@ SettledRunners settle_runners(const PackedModel& packed, const SettledRunners& p
     const PackedRunner& own = packed.runners()[static_cast<std::size_t>(r)];
     std::vector<RailsUnder> rails;
     for (int i = 0; i < runner.wheelsets; ++i) {
-      const RailsUnder uneven = rails_under(model, runner, i, 0, -time);
+      const RailsUnder uneven = rails_under(model, runner, i, place_at(runner, time));
       RailsUnder& under = rails.emplace_back(RailsUnder{});
       for (int side = 0; side < 2; ++side) {
         under.z[side] = uneven.z[side];
@@ -178,7 +187,7 @@ SettledRunners settle_runners(const PackedModel& packed, const SettledRunners& p
                                   static_cast<int>(first_port++));
       }
     }
-    const double speed = travelled(runner.travel, 0.).speed;
+    const double speed = first_speed(runner);
     settled.steady.push_back(
         steady_running(own.vehicle.runner, own.matrices, own.vehicle.contact, speed, rails));
     for (const auto& wheels :

@@ -133,7 +133,7 @@ void couple_seats(const Model& model, const State& s, const Coupling& c, const R
         before = (c.located[row] + residual_before(model, s, c, row)) +
                  (moved_by_wheel(own.along[k], last) + c.seat[row - c.contacts].rise);
       law.rate_at_zero[to + k] = -law.seat_rate * before;
-      if (banded) law.rate_at_zero[to + k] -= law.speed * slope[row];
+      if (banded) law.rate_at_zero[to + k] -= law.ahead * slope[row];
     }
   }
 }
@@ -142,11 +142,10 @@ void couple_seats(const Model& model, const State& s, const Coupling& c, const R
 
 void locate_wheel_seats(const Model& model, const Stage& stage, const State& s, const Workspace& w,
                         Coupling& c) noexcept {
-  const double ahead = held_fraction(model) * stage.span;
-  const double before = stage.before + (stage.span - ahead);
+  const double held = held_fraction(model);
   const Configuration at = located_on(model, s, w);
   for_each_wheelset(model, [&](const RunnerModel& runner, int i, std::int32_t set) noexcept {
-    const double x = element_place(model, runner, i, stage.step, before);
+    const double x = element_place(model, runner, i, stage_of(model, runner, stage).along(held, s));
     if (c.mirrored) {
       const std::int32_t row = wheel_seat_row(model, set, 0);
       return locate_mirrored_seats(model, at, runner, x, c.seat + (row - c.contacts),
@@ -207,14 +206,14 @@ void couple_runners(const Model& model, const Stage& stage, State& s, Workspace&
     const RunnerStage at = stage_of(model, runner, stage);
     WheelsetMotion motion;
     find_motion(at, i, s, w, w.solved + runner.first, motion);
-    WheelsetLaw& law = all.law[set] = law_of(at, i, true);
+    WheelsetLaw& law = all.law[set] = law_of(at, i, true, s);
     const int first = all.scalars + kOfWheelset * set;
     for (int k = 0; k < kMotions; ++k) {
       all.z_free[first + k] = motion.free[k];
       all.motion[first + k] = motion.start[k];
       law.rate_at_zero[k] = motion.rate_at_zero[k];
     }
-    const double place = element_place(model, runner, i, stage.step, stage.before + stage.span);
+    const double place = element_place(model, runner, i, at.along(0., s));
     const bool enters = !(place >= 0. && place <= model.elements * model.element_length);
     couple_seats(model, s, c, runner, set, slope, enters, all);
     if (has_profiles(runner.contact)) law.profile = profile_wheels(w, set);

@@ -233,7 +233,8 @@ void describe(Archive& a, ProfileContact& c) {
 
 template <typename Archive>
 void describe(Archive& a, RollingContact& c) {
-  for (double* x : {&c.slope, &c.half_distance, &c.crown_radius, &c.hertz}) a.real(*x);
+  for (double* x : {&c.slope, &c.half_distance, &c.crown_radius, &c.hertz, &c.relaxation})
+    a.real(*x);
   RollingCreep& creep = c.creep;
   auto law = static_cast<std::int32_t>(creep.law);
   a.count(law, static_cast<std::int32_t>(CreepLaw::polach));
@@ -250,6 +251,8 @@ void describe(Archive& a, RollingContact& c) {
 template <typename Archive>
 void describe(Archive& a, RunnerModel& r) {
   describe(a, r, kMaxRunnerUnknowns);
+  a.count(r.rolls_freely, 1);
+  a.real(r.start_speed);
   a.count(r.bodies, r.size / kMotions);
   a.count(r.first_wheelset, kMaxRunnerWheelsets);
   a.count(r.wheelsets, kMaxWheelsetsOfRunner);

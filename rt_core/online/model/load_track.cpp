@@ -167,7 +167,7 @@ bool profiles_are_valid(const ProfileContact& c) noexcept {
 bool contact_is_valid(const RollingContact& c) noexcept {
   const bool drawn = has_profiles(c);
   return c.hertz > 0. && (drawn ? c.crown_radius == 0. : c.crown_radius > 0.) &&
-         c.half_distance > 0. && c.slope >= 0. && creep_is_valid(c.creep) &&
+         c.half_distance > 0. && c.slope >= 0. && c.relaxation >= 0. && creep_is_valid(c.creep) &&
          (!drawn || profiles_are_valid(c.profiles));
 }
 
@@ -187,6 +187,7 @@ struct RunnerCounts {
 bool runner_is_valid(const Model& m, const RunnerModel& r, const RunnerCounts& before) noexcept {
   if (!suspended_is_valid(m, r) || !stops_are_valid(r, before.stops) || r.bodies < 1) return false;
   if (r.first_wheelset != before.wheelsets || r.wheelsets < 1) return false;
+  if (r.rolls_freely != 0 && m.lines > 0 && m.endless.bays != 0) return false;
   if (r.first_rod != before.rods || !r.reaction || (r.rods > 0 && !r.rod_row)) return false;
   for (std::int32_t i = 0; i < r.wheelsets; ++i) {
     const RunnerWheelset& w = r.wheelset[i];

@@ -51,6 +51,7 @@ struct RollingContact {
   double crown_radius;   // m; 0 with profiles
   double hertz;          // N/m^1.5; with profiles that of the static load, to start from
   RollingCreep creep;
+  double relaxation;  // length in which creep follows slip at a standstill, m; of free runners
   ProfileContact profiles;
 };
 inline bool has_profiles(const RollingContact& c) noexcept {
@@ -96,7 +97,11 @@ struct RunnerWheelset {
 /// each damper that is in series with a spring; such a coordinate has no mass. Constraints hold the
 /// first body's x at its place along the track, by the force of the drive, and the lengths of rigid
 /// rods. `inverse` is that of what they leave free, so that they hold to rounding.
+/// A vehicle that rolls freely goes as forces drive it: nothing holds its x, and its frame stays
+/// where it starts, so that x holds the way.
 struct RunnerModel : SuspendedModel {
+  std::int32_t rolls_freely;                       // 0 or 1
+  double start_speed;                              // m/s, of one that rolls freely; else 0
   std::int32_t bodies, first_wheelset, wheelsets;  // the first one among those of all runners
   RunnerWheelset wheelset[kMaxWheelsetsOfRunner];
   RollingContact contact;
@@ -119,7 +124,12 @@ inline std::int32_t interface_size(const RunnerModel& runner) noexcept {
   return kMotions * runner.wheelsets + runner.stops;
 }
 
-/// The constraints of a runner: its drive, then its rods.
+/// How far a runner is ahead of its frame by its first body, m. @param u  [size] of the runner
+inline double ahead_of(const RunnerModel& runner, const double* u) noexcept {
+  return runner.rolls_freely != 0 ? u[0] : 0.;
+}
+
+/// The constraints of a runner: its drive, which one that rolls freely has not, then its rods.
 inline std::int32_t constraint_count(const RunnerModel& runner) noexcept { return 1 + runner.rods; }
 
 }  // namespace railstep

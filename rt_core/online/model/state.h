@@ -27,6 +27,9 @@ struct State {
   /// [wheels of runners][kSeatMotions] on banded lines: y, z and roll of the seat under the wheel,
   /// m and rad, then the rates of the rail there.
   double* seat;
+  /// [wheels of runners][3] creepages along, across and of spin (1/m) of the last step, if any
+  /// runner rolls freely.
+  double* creepage;
   double* reaction;    // [runners + their rods] N, of the last step: of each runner the force ahead
                        // of its drive, then the tensions of its rods
   double* multiplier;  // [wheelsets][kGuideRows] of the guide along x, N, and about z, N m;
@@ -167,6 +170,8 @@ struct Outputs {
   double wheelset_sum_y[kMaxRunnerWheelsets], wheelset_y[kMaxRunnerWheelsets];
   double wheelset_yaw[kMaxRunnerWheelsets];
   double drive_force[kMaxRunners];     // ahead on each rail vehicle, which keeps its speed, N
+  /// Of rail vehicles that roll freely: the way of their first body, m, and its speed, m/s.
+  double runner_way[kMaxRunners], runner_speed[kMaxRunners];
   double rod_tension[kMaxRunnerRods];  // N, of the rigid rods of rail vehicles
   double stop_force[kMaxRunnerStops];  // N, of their bump stops along the axis, on the first body
   /// The point of the rail under each external wheel at the frame's end.
@@ -207,15 +212,31 @@ inline double* seat_motion_of(const State& state, std::int32_t wheelset,
   return state.seat + std::ptrdiff_t{kSeatMotions} * (2 * wheelset + side);
 }
 
+/// Whether states keep the creepages of wheels.
+inline bool keeps_creepage(const Model& model) noexcept {
+  bool any = false;
+  for (std::int32_t i = 0; i < model.runners; ++i) any = any || model.runner[i].rolls_freely != 0;
+  return any;
+}
+/// The creepages of a wheel of a runner, [3], if states keep them.
+inline double* creepage_of(const State& state, std::int32_t wheelset, std::int32_t side) noexcept {
+  return state.creepage + std::ptrdiff_t{3} * (2 * wheelset + side);
+}
+
 /// The forces of a runner's constraints, [constraint_count].
 inline double* reactions_of(const Model& model, const State& state,
                             const RunnerModel& runner) noexcept {
   return state.reaction + (&runner - model.runner) + runner.first_rod;
 }
 
-/// Numbers of State::wheel_force and State::seat.
+/// Numbers of State::seat.
+inline std::int64_t seat_doubles(const Model& model) noexcept {
+  return keeps_seats(model) ? 2LL * kSeatMotions * model.runner_wheelsets : 0;
+}
+/// Numbers of State::wheel_force, State::seat and State::creepage.
 inline std::int64_t wheel_state_doubles(const Model& model) noexcept {
-  return 2LL * (kWheelForces + (keeps_seats(model) ? kSeatMotions : 0)) * model.runner_wheelsets;
+  return 2LL * (kWheelForces + (keeps_creepage(model) ? 3 : 0)) * model.runner_wheelsets +
+         seat_doubles(model);
 }
 /// Those, and those of State::reaction.
 inline std::int64_t runner_state_doubles(const Model& model) noexcept {
@@ -249,6 +270,7 @@ inline State state_on(const Model& model, double* memory) noexcept {
   double* const ports = wheels + contact_count(model);
   double* const runners = ports + model.fixed.count;
   double* const seats = runners + 2LL * kWheelForces * model.runner_wheelsets;
+  double* const creepages = seats + seat_doubles(model);
   double* const reactions = runners + wheel_state_doubles(model);
   double* const guides = runners + runner_state_doubles(model);
   double* const system = guides + guide_rows(model);
@@ -263,6 +285,7 @@ inline State state_on(const Model& model, double* memory) noexcept {
           ports,
           runners,
           seats,
+          creepages,
           reactions,
           guides,
           system,

@@ -164,16 +164,17 @@ void add(double share, const WheelForce& own, WheelForce& sum) noexcept {
   sum.on_section += share * own.on_section;
   sum.creep_power += share * own.creep_power;
   for (int k = 0; k < 6; ++k) sum.generalised[k] += share * own.generalised[k];
+  for (int k = 0; k < 3; ++k) sum.creepage[k] += share * own.normal * own.creepage[k];
 }
 
 }  // namespace
 
 WheelForce profile_force(const RollingContact& c, const ProfileWheel& wheel, double radius,
-                         double side, double speed, const OverRail& at, const double* v,
+                         double side, const Rolling& rolling, const OverRail& at, const double* v,
                          const RailRate& rail, double* stiffness, ContactSlopes* slopes) noexcept {
-  WheelForce sum{-1., 0., 0., {}, 0., false};
+  WheelForce sum{-1., 0., 0., {}, 0., false, {}};
   int touching = 0, sliding = 0;
-  const double spin = speed / radius + v[index_of(BodyMotion::pitch)];
+  const double spin = rolling.frame / radius + v[index_of(BodyMotion::pitch)];
   const double yawed = at.motion[index_of(BodyMotion::yaw)] - wheel.placed[3];
   for (int i = 0; i < wheel.patches; ++i) {
     const ProfilePatch& patch = wheel.patch[i];
@@ -186,25 +187,29 @@ WheelForce profile_force(const RollingContact& c, const ProfileWheel& wheel, dou
       continue;
     }
     rows.across_spin += patch.across_turned * yawed;
-    const Slip<double> slip = slip_of(rows, v, speed, radius, rail);
+    const Slip<double> slip = slip_of(rows, v, rolling.frame, radius, rail);
     const PatchForce force = patch_force(patch_of(patch.zone), rows.depth);
     const double share = patch.zone.share;
     const double beyond = rows.depth - patch.zone.patch.hold.gap;
     RollingPatch grown = patch.creep;
     if (grown.growth > 0. && force.normal > 0.)
       grown.growth = .5 * force.normal / (force.stiffness * beyond);
-    const ContactCreep creep = contact_creep(c.creep, grown, friction_of(c.creep, side),
-                                             {beyond, force.normal}, slip, speed);
+    const ContactCreep creep =
+        contact_creep(c.creep, grown, friction_of(c.creep, side), {beyond, force.normal},
+                      with_creep_before(slip, rolling), rolling.over);
     stiffness[i] = share * force.stiffness;
     if (slopes != nullptr) {
       find_slopes(rows, patch.across_turned, force.stiffness, spin, creep, slopes[i]);
       take_share(share, slopes[i]);
     }
-    add(share, wheel_force(rows, force.normal, slip, creep), sum);
+    add(share, wheel_force(rows, force.normal, slip, rolling, creep), sum);
     ++touching;
-    sliding += creep.slides ? 1 : 0;
+    sliding += creep.slides() ? 1 : 0;
   }
   sum.slides = touching > 0 && sliding == touching;
+  // Patches of a wheel keep one mean.
+  const double per_normal = sum.normal > 0. ? 1. / sum.normal : 0.;
+  for (double& own : sum.creepage) own *= per_normal;
   return sum;
 }
 

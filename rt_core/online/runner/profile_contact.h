@@ -43,7 +43,7 @@ void find_profile_wheel(const RollingContact& c, double radius, double side, con
 /// @param stiffness  [patches] out: of the normal forces, N/m
 /// @param slopes     [patches] out; null: none
 WheelForce profile_force(const RollingContact& c, const ProfileWheel& wheel, double radius,
-                         double side, double speed, const OverRail& at, const double* v,
+                         double side, const Rolling& rolling, const OverRail& at, const double* v,
                          const RailRate& rail, double* stiffness,
                          ContactSlopes* slopes = nullptr) noexcept;
 

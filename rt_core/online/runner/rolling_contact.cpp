@@ -54,7 +54,7 @@ void find_slopes(const WheelRows<double>& r, const Slip<Placed>& slip, const Pla
 
 }  // namespace
 
-WheelForce wheel_force(const RollingContact& c, double radius, double side, double speed,
+WheelForce wheel_force(const RollingContact& c, double radius, double side, const Rolling& rolling,
                        const double* u, const double* v, const RailRate& rail,
                        ContactSlopes& slopes) noexcept {
   const WheelRows<Placed> placed =
@@ -63,15 +63,16 @@ WheelForce wheel_force(const RollingContact& c, double radius, double side, doub
   const WheelRows<double> r = values(placed);
   if (!(r.depth > 0.)) {
     slopes = {};
-    return {r.depth, 0., 0., {}, 0., false};
+    return {r.depth, 0., 0., {}, 0., false, {}};
   }
-  const Slip<Placed> slip = slip_of(placed, v, speed, radius, rail);
+  const Slip<Placed> slip = slip_of(placed, v, rolling.frame, radius, rail);
   const Slip<double> slips{slip.along.value, slip.across.value, slip.spin.value};
   const Placed normal = normal_force(c, placed.depth);
-  const ContactCreep creep = contact_creep(c.creep, c.creep.patch, friction_of(c.creep, side),
-                                           {r.depth, normal.value}, slips, speed);
+  const ContactCreep creep =
+      contact_creep(c.creep, c.creep.patch, friction_of(c.creep, side), {r.depth, normal.value},
+                    with_creep_before(slips, rolling), rolling.over);
   find_slopes(r, slip, normal, creep, slopes);
-  return wheel_force(r, normal.value, slips, creep);
+  return wheel_force(r, normal.value, slips, rolling, creep);
 }
 
 }  // namespace railstep

@@ -237,7 +237,8 @@ struct WheelForce {
   double on_section;      // moment on the rail's section, N m
   double generalised[6];  // over the wheelset's motions, N and N m; the first three are x, y, z
   double creep_power;     // W; of linear creep not above 0
-  bool slides;            // ContactCreep::slides
+  bool slides;            // ContactCreep::slides()
+  double creepage[3];     // State::creepage, if Rolling::keeps
 };
 
 /// Derivatives of the normal force and of the creep forces along and across, over kPlaced, over the
@@ -252,12 +253,27 @@ struct ContactSlopes {
 void fill_rates_and_spread(const WheelRows<double>& r, const ContactCreep& creep,
                            ContactSlopes& slopes) noexcept;
 
+/// The creepages that a state keeps of a contact that rolls slowly. From where creep has saturated
+/// on they do not grow: the spring would have to be unloaded as far. Spin counts as if the wheel
+/// rolled ahead: the force across by it does not depend on the direction.
+/// @param slip  with_creep_before()
+inline void keep_creepage(const Rolling& rolling, const Slip<double>& slip,
+                          const ContactCreep& creep, double* creepage) noexcept {
+  const double part = creep.slides() ? ContactCreep::kSlides / creep.size : 1.,
+               per = part * per_rolling(rolling.over);
+  creepage[0] = per * slip.along;
+  creepage[1] = per * slip.across;
+  creepage[2] = (rolling.over < 0. ? -per : per) * slip.spin;
+}
+
 /// The force at a contact in touch whose creep is known.
 inline WheelForce wheel_force(const WheelRows<double>& r, double normal, const Slip<double>& slip,
-                              const ContactCreep& creep) noexcept {
+                              const Rolling& rolling, const ContactCreep& creep) noexcept {
   const double* const f = creep.force;
   const double on_section = f[1] * r.across_section - normal * r.normal_section;
-  WheelForce force{r.depth, normal, on_section, {}, 0., creep.slides};
+  WheelForce force{r.depth, normal, on_section, {}, 0., creep.slides(), {}};
+  if (rolling.keeps)
+    keep_creepage(rolling, with_creep_before(slip, rolling), creep, force.creepage);
   force.creep_power = f[0] * slip.along + f[1] * slip.across + f[2] * slip.spin;
   generalise(r, ContactForces<double>{normal, f[0], f[1], f[2]}, force.generalised);
   return force;
@@ -266,19 +282,21 @@ inline WheelForce wheel_force(const WheelRows<double>& r, double normal, const S
 /// @param side  1 of the left wheel, -1 of the right
 /// @param u, v  [6] motions of the wheelset over the rail, and their rates
 /// @param rail  rates of the rail
-inline WheelForce wheel_force(const RollingContact& c, double radius, double side, double speed,
-                              const double* u, const double* v, const RailRate& rail) noexcept {
+inline WheelForce wheel_force(const RollingContact& c, double radius, double side,
+                              const Rolling& rolling, const double* u, const double* v,
+                              const RailRate& rail) noexcept {
   const WheelRows<double> r = wheel_rows(c, radius, side, u[1], u[2], u[3], u[5]);
-  if (!(r.depth > 0.)) return {r.depth, 0., 0., {}, 0., false};
-  const Slip<double> slip = slip_of(r, v, speed, radius, rail);
+  if (!(r.depth > 0.)) return {r.depth, 0., 0., {}, 0., false, {}};
+  const Slip<double> slip = slip_of(r, v, rolling.frame, radius, rail);
   const double normal = normal_force(c, r.depth);
-  return wheel_force(r, normal, slip,
-                     contact_creep(c.creep, c.creep.patch, friction_of(c.creep, side),
-                                   {r.depth, normal}, slip, speed));
+  return wheel_force(
+      r, normal, slip, rolling,
+      contact_creep(c.creep, c.creep.patch, friction_of(c.creep, side), {r.depth, normal},
+                    with_creep_before(slip, rolling), rolling.over));
 }
 
 /// The same with derivatives.
-WheelForce wheel_force(const RollingContact& c, double radius, double side, double speed,
+WheelForce wheel_force(const RollingContact& c, double radius, double side, const Rolling& rolling,
                        const double* u, const double* v, const RailRate& rail,
                        ContactSlopes& slopes) noexcept;
 

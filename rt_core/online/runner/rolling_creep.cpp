@@ -8,7 +8,6 @@ namespace railstep {
 namespace {
 
 constexpr double kLeastSize = 1e-10;  // of linear creep over the limit: it has a direction beyond
-constexpr double kSlides = 3.;        // linear creep over the limit; Shen, Hedrick and Elkins
 
 /// Linear creep: forces along and across and the moment over creepages, N, N m and N m2.
 struct LinearCreep {
@@ -43,9 +42,10 @@ void saturate(const RollingCreep& c, const CreepPatch& patch, const LinearCreep&
   const double x = sum_of(linear.by[0], creepage), y = sum_of(linear.by[1], creepage),
                moment = sum_of(linear.by[2], creepage);
   const double size = square_root(x * x + y * y), u = size / patch.limit;
-  found.slides = u >= kSlides;
-  const double factor = found.slides ? 1. / u : 1. - u * (1. / 3.) + u * u * (1. / 27.);
-  const double by_u = found.slides ? -1. / (u * u) : -1. / 3. + u * (2. / 27.);
+  found.size = u;
+  const bool slides = found.slides();
+  const double factor = slides ? 1. / u : 1. - u * (1. / 3.) + u * u * (1. / 27.);
+  const double by_u = slides ? -1. / (u * u) : -1. / 3. + u * (2. / 27.);
   found.force[0] = force.x;
   found.force[1] = force.y;
   found.force[2] = factor * moment;

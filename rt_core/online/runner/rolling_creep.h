@@ -11,13 +11,29 @@ struct Slip {
   T along, across, spin;
 };
 
+/// How a wheel rolls along its rail.
+struct Rolling {
+  double frame;  // speed of the wheelset's frame, m/s
+  double over;   // speed over which slip gives creepages, m/s; negative backwards
+  /// Slip that stands for the creep of the step before, m/s, m/s and rad/s, if creep keeps it: at a
+  /// standstill creep is a spring.
+  double left[3];
+  bool keeps;
+  /// A wheelset that goes along with its frame.
+  Rolling(double speed = 0.) noexcept  // NOLINT(google-explicit-constructor)
+      : frame(speed), over(speed), left{}, keeps(false) {}
+};
+
 /// Creep of a contact: forces on the wheel along and across, N, and the moment about the normal,
 /// N m, and their derivatives.
 struct ContactCreep {
   double force[3];
   double by_slip[3][3];  // over Slip's along, across and spin
   double by_normal[3];   // over the normal force, at the same slip
-  bool slides;           // linear creep would be at least three times the limit: it has saturated
+  double size;           // of linear creep over the limit; 0 of a law without one
+  /// Linear creep would be at least three times the limit: it has saturated.
+  bool slides() const noexcept { return size >= kSlides; }
+  static constexpr double kSlides = 3.;  // Shen, Hedrick and Elkins
 };
 
 /// Where a contact in touch is pressed.
@@ -57,7 +73,13 @@ inline ContactCreep contact_creep(const RollingCreep& c, const RollingPatch& pat
            both * slip.across + spin * slip.spin},
           {{along, 0., 0.}, {0., across, -both}, {0., both, spin}},
           {},
-          false};
+          0.};
+}
+
+/// Slip with what stands for the creep before.
+inline Slip<double> with_creep_before(const Slip<double>& slip, const Rolling& rolling) noexcept {
+  const double* const left = rolling.left;
+  return {slip.along + left[0], slip.across + left[1], slip.spin + left[2]};
 }
 
 }  // namespace railstep

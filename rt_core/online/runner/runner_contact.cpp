@@ -13,7 +13,11 @@ constexpr double kLargeTurn = .1;  // rad, of a body in its frame: sines are 0.2
 void publish_constraints(const Model& model, const RunnerModel& runner, const State& at,
                          Outputs& out) noexcept {
   const double* const reaction = reactions_of(model, at, runner);
-  out.drive_force[&runner - model.runner] = reaction[0];
+  const std::ptrdiff_t own = &runner - model.runner;
+  const bool free = runner.rolls_freely != 0;
+  out.drive_force[own] = reaction[0];
+  out.runner_way[own] = free ? at.u[runner.first] : 0.;
+  out.runner_speed[own] = free ? at.v[runner.first] : 0.;
   for (std::int32_t j = 0; j < runner.rods; ++j) {
     out.rod_tension[runner.first_rod + j] = reaction[1 + j];
     const double* const row = runner.rod_row + std::ptrdiff_t{runner.size} * j;
@@ -44,7 +48,8 @@ void publish_wheelset(const Model& model, const RunnerModel& runner, int i, cons
                       Outputs& out) noexcept {
   const std::int32_t set = runner.first_wheelset + i;
   const double* const u = at.u + runner.first + runner.wheelset[i].first;
-  const double place = element_place(model, runner, i, at.steps, 0.);
+  const double place =
+      element_place(model, runner, i, {at.steps, 0., ahead_of(runner, at.u + runner.first)});
   out.wheelset_sum_y[set] = 0.;
   for (int side = 0; side < 2; ++side) {
     const std::int32_t wheel = 2 * set + side;
@@ -64,31 +69,51 @@ void publish_wheelset(const Model& model, const RunnerModel& runner, int i, cons
 
 }  // namespace
 
-WheelForce force_on_wheel(const RollingContact& c, double radius, double side, double speed,
-                          const OverRail& at, const double* v, const RailRate& rate) noexcept {
-  if (!has_profiles(c)) return wheel_force(c, radius, side, speed, at.motion, v, rate);
+WheelForce force_on_wheel(const RollingContact& c, double radius, double side,
+                          const Rolling& rolling, const OverRail& at, const double* v,
+                          const RailRate& rate) noexcept {
+  if (!has_profiles(c)) return wheel_force(c, radius, side, rolling, at.motion, v, rate);
   ProfileWheel wheel;
   find_profile_wheel(c, radius, side, at, wheel);
   double stiffness[kMostZones];
-  return profile_force(c, wheel, radius, side, speed, at, v, rate, stiffness);
+  return profile_force(c, wheel, radius, side, rolling, at, v, rate, stiffness);
 }
 
-double element_place(const Model& model, const RunnerModel& runner, int wheelset, std::int64_t step,
-                     double before) noexcept {
+double element_place(const Model& model, const RunnerModel& runner, int wheelset,
+                     const AlongTrack& at) noexcept {
   const double way =
       model.lines == 0
-          ? travelled(runner.travel, static_cast<double>(step) * model.scheme.dt - before).distance
-          : way_at(model, runner.travel, step, before).distance;
-  return (runner.start + way) + runner.wheelset[wheelset].place;
+          ? travelled(runner.travel, static_cast<double>(at.step) * model.scheme.dt - at.before)
+                .distance
+          : way_at(model, runner.travel, at.step, at.before).distance;
+  return (runner.start + (way + at.ahead)) + runner.wheelset[wheelset].place;
+}
+
+Rolling rolling_of(const RunnerModel& runner, int wheelset, double frame, const double* v,
+                   const double* creepage, double dt) noexcept {
+  constexpr double kSlow = 1., kSteady = 1e12;  // m/s, 1/s
+  Rolling rolling(frame);
+  if (runner.rolls_freely == 0) return rolling;
+  const double ahead = frame + v[index_of(BodyMotion::x)],
+               rim = frame + runner.wheelset[wheelset].radius * v[index_of(BodyMotion::pitch)];
+  const double mean = .5 * (std::fabs(ahead) + std::fabs(rim)), slow = 2. - 2. * mean / kSlow;
+  const double length = runner.contact.relaxation * (slow > 1. ? 1. : slow > 0. ? slow : 0.);
+  const double follows = length * (dt > 0. ? 1. / dt : kSteady);
+  const double sign = ahead + rim < 0. ? -1. : 1.;
+  rolling.over = sign * (mean + follows);
+  rolling.keeps = true;
+  for (int k = 0; k < 3; ++k) rolling.left[k] = follows * creepage[k];
+  rolling.left[2] *= sign;
+  return rolling;
 }
 
 RailsUnder rails_under(const Model& model, const RunnerModel& runner, int wheelset,
-                       std::int64_t step, double before, RailsUnder* slopes) noexcept {
+                       const AlongTrack& at, RailsUnder* slopes) noexcept {
   RailsUnder rails{};
   if (slopes != nullptr) *slopes = {};
   if (model.signals == 0) return rails;
-  const double x = element_place(model, runner, wheelset, step, before) +
-                   (model.lines > 0 ? track_offset(model, step) : 0.);
+  const double x = element_place(model, runner, wheelset, at) +
+                   (model.lines > 0 ? track_offset(model, at.step) : 0.);
   for (std::int32_t i = 0; i < model.signals; ++i) {
     const RailSignal& own = model.signal[i];
     const SignalValue found = signal_at(own.signal, x);

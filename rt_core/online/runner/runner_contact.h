@@ -6,15 +6,22 @@ namespace railstep {
 
 // Wheels of runners on their rails.
 
-/// @param before  s before the end of the step
+/// Where a runner's frame is, and how far the runner is ahead of it.
+struct AlongTrack {
+  std::int64_t step;
+  double before;      // s before the end of the step
+  double ahead = 0.;  // m, ahead_of() of runners that roll freely
+};
+
 /// @param slopes  out: derivatives along x; null: none
 RailsUnder rails_under(const Model& model, const RunnerModel& runner, int wheelset,
-                       std::int64_t step, double before, RailsUnder* slopes = nullptr) noexcept;
+                       const AlongTrack& at, RailsUnder* slopes = nullptr) noexcept;
 
 /// Force of a rail on a wheel of a wheelset by profiles or by cones.
 /// @param side  1 of the left wheel, -1 of the right
-WheelForce force_on_wheel(const RollingContact& c, double radius, double side, double speed,
-                          const OverRail& at, const double* v, const RailRate& rate) noexcept;
+WheelForce force_on_wheel(const RollingContact& c, double radius, double side,
+                          const Rolling& rolling, const OverRail& at, const double* v,
+                          const RailRate& rate) noexcept;
 
 /// The numbers that a state keeps of a wheel's force. @param to  [kWheelForces]
 inline void keep_wheel_force(const WheelForce& force, double* to) noexcept {
@@ -23,8 +30,18 @@ inline void keep_wheel_force(const WheelForce& force, double* to) noexcept {
 }
 
 /// Place of a wheelset along the model's elements, m.
-double element_place(const Model& model, const RunnerModel& runner, int wheelset, std::int64_t step,
-                     double before) noexcept;
+double element_place(const Model& model, const RunnerModel& runner, int wheelset,
+                     const AlongTrack& at) noexcept;
+
+/// How a wheel rolls. That of a runner that rolls freely does so at the mean of its own speed and
+/// of its rim's; slower than 1 m/s its creep follows slip in a length, up to `relaxation`, by the
+/// implicit rule of Euler.
+/// @param frame     speed of the wheelset's frame, m/s
+/// @param v         [6] rates of the wheelset's motions
+/// @param creepage  [3] State::creepage; not looked at where the runner does not roll freely
+/// @param dt        time in which the creep has changed since, s; 0: not at all
+Rolling rolling_of(const RunnerModel& runner, int wheelset, double frame, const double* v,
+                   const double* creepage, double dt) noexcept;
 
 /// Publishes the wheels and wheelsets of all runners, and the forces that hold them at their
 /// places.

@@ -29,7 +29,8 @@ void find_frame_forces(const RunnerStage& at, const State& s, const Workspace& w
     const std::int32_t roll = set.first + index_of(BodyMotion::roll),
                        spin = set.first + index_of(BodyMotion::pitch),
                        yaw = set.first + index_of(BodyMotion::yaw);
-    const double momentum = set.spin_inertia * (way.speed / set.radius);
+    const double beyond = r.rolls_freely != 0 ? s.v[r.first + spin] : 0.;
+    const double momentum = set.spin_inertia * (way.speed / set.radius + beyond);
     force[roll] += momentum * rate(yaw);
     force[yaw] -= momentum * rate(roll);
     force[spin] -= set.spin_inertia * (way.acceleration / set.radius);
@@ -128,7 +129,7 @@ RunnerResult solve_runner(const RunnerStage& at, State& s, Workspace& w) noexcep
   for (int i = 0; i < r.wheelsets; ++i) {
     WheelsetMotion motion;
     find_motion(at, i, s, w, u, motion);
-    law[i] = law_of(at, i, false);
+    law[i] = law_of(at, i, false, s);
     if (has_profiles(r.contact)) law[i].profile = profile_wheels(w, r.first_wheelset + i);
     for (int k = 0; k < kMotions; ++k) {
       z_free[kMotions * i + k] = motion.free[k];
@@ -166,9 +167,12 @@ RunnerResult solve_runner(const RunnerStage& at, State& s, Workspace& w) noexcep
 
 void keep_wheel_forces(const RunnerModel& runner, int wheelset, const WheelsetLaw& law,
                        State& s) noexcept {
-  for (int side = 0; side < 2; ++side)
-    for (int d = 0; d < kWheelForces; ++d)
-      wheel_force_of(s, runner.first_wheelset + wheelset, side)[d] = law.kept[side][d];
+  const std::int32_t set = runner.first_wheelset + wheelset;
+  for (int side = 0; side < 2; ++side) {
+    for (int d = 0; d < kWheelForces; ++d) wheel_force_of(s, set, side)[d] = law.kept[side][d];
+    for (int k = 0; k < 3 && runner.rolls_freely != 0; ++k)
+      creepage_of(s, set, side)[k] = law.creepage[side][k];
+  }
 }
 
 RunnerResult solve_runners(const Model& model, const Stage& stage, State& s,

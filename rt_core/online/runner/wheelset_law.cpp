@@ -110,8 +110,8 @@ WheelForce WheelsetLaw::on_cone(const Placed& at, int side, const LawSlopes* slo
   ContactSlopes own;
   const WheelForce f =
       slopes == nullptr
-          ? wheel_force(c, radius, sign_of(side), speed, over, at.v, at.moving[side])
-          : wheel_force(c, radius, sign_of(side), speed, over, at.v, at.moving[side], own);
+          ? wheel_force(c, radius, sign_of(side), rolling[side], over, at.v, at.moving[side])
+          : wheel_force(c, radius, sign_of(side), rolling[side], over, at.v, at.moving[side], own);
   *steep = f.depth > 0. ? std::sqrt(f.depth) : 0.;
   if (slopes != nullptr)
     fill_slopes(own, rate, seat_rate, 1. - later * rate, size(), seated ? kMotions + 3 * side : 0,
@@ -127,9 +127,10 @@ WheelForce WheelsetLaw::on_profile(const Placed& at, int side, const LawSlopes* 
   ContactSlopes own[kMostZones];
   own[0] = {};
   double stiffness[kMostZones] = {};
-  const WheelForce f = profile_force(runner->contact, wheel, runner->wheelset[wheelset].radius,
-                                     sign_of(side), speed, {over, at.under.roll[side]}, at.v,
-                                     at.moving[side], stiffness, slopes == nullptr ? nullptr : own);
+  const WheelForce f =
+      profile_force(runner->contact, wheel, runner->wheelset[wheelset].radius, sign_of(side),
+                    rolling[side], {over, at.under.roll[side]}, at.v, at.moving[side], stiffness,
+                    slopes == nullptr ? nullptr : own);
   const int n = size(), full = rank(), seat = seated ? kMotions + 3 * side : 0;
   const bool folded = is_folded();
   for (int i = 0; i < contacts(side); ++i) {
@@ -171,6 +172,7 @@ void WheelsetLaw::evaluate(const double* z, double* force, const LawSlopes* slop
     at_edge = at_edge || (profile != nullptr && profile[side].at_edge);
     for (int k = 0; k < kMotions; ++k) force[k] += f.generalised[k];
     keep_wheel_force(f, kept[side]);
+    for (int k = 0; k < 3; ++k) creepage[side][k] = f.creepage[k];
     if (!seated) continue;
     const int seat = kMotions + 3 * side;
     force[seat] = -f.generalised[1];
@@ -179,22 +181,28 @@ void WheelsetLaw::evaluate(const double* z, double* force, const LawSlopes* slop
   }
 }
 
-WheelsetLaw law_of(const RunnerStage& at, int wheelset, bool seated) noexcept {
+WheelsetLaw law_of(const RunnerStage& at, int wheelset, bool seated, const State& s) noexcept {
   const double theta = at.model.scheme.theta;
   const bool banded = at.model.form == Form::banded;
+  const RunnerModel& runner = at.runner;
+  const double* const v = s.v + runner.first + runner.wheelset[wheelset].first;
+  const double frame = travelled(runner.travel, at.time(theta)).speed;
   WheelsetLaw law{};
-  law.runner = &at.runner;
+  law.runner = &runner;
   law.wheelset = wheelset;
   law.seated = seated;
   RailsUnder slope;
-  law.rails = rails_under(at.model, at.runner, wheelset, at.stage.step, at.before(theta), &slope);
-  law.speed = travelled(at.runner.travel, at.time(theta)).speed;
+  law.rails = rails_under(at.model, runner, wheelset, at.along(theta, s), &slope);
+  law.ahead = frame + ahead_of(runner, s.v + runner.first);
   law.rate = at.rate;
   law.seat_rate = banded ? 1. / at.stage.span : at.rate;
   law.later = banded ? 0. : (theta - .5) * at.model.scheme.dt;
   for (int side = 0; side < 2; ++side) {
-    law.rails.y[side] -= law.later * (law.speed * slope.y[side]);
-    law.uneven_rate[side] = law.speed * slope.z[side];
+    law.rolling[side] =
+        rolling_of(runner, wheelset, frame, v,
+                   creepage_of(s, runner.first_wheelset + wheelset, side), at.stage.span);
+    law.rails.y[side] -= law.later * (law.ahead * slope.y[side]);
+    law.uneven_rate[side] = law.ahead * slope.z[side];
   }
   return law;
 }

@@ -18,6 +18,12 @@ struct RunnerStage {
   double time(double fraction) const noexcept {
     return static_cast<double>(stage.step) * model.scheme.dt - before(fraction);
   }
+  /// Where the runner is at an instant of the stage. @param s  at its start
+  AlongTrack along(double fraction, const State& s) const noexcept {
+    const double rolled = ahead_of(runner, s.u + runner.first) +
+                          fraction * stage.span * ahead_of(runner, s.v + runner.first);
+    return {stage.step, before(fraction), rolled};
+  }
 };
 RunnerStage stage_of(const Model& model, const RunnerModel& runner, const Stage& stage) noexcept;
 
@@ -29,7 +35,9 @@ struct WheelsetLaw {
   bool seated;
   RailsUnder rails;
   /// Rates are these times the motions, of the wheelset and of the seats, and `rate_at_zero`.
-  double speed, rate, seat_rate;
+  double rate, seat_rate;
+  double ahead;        // speed of the wheelset along the track, m/s
+  Rolling rolling[2];  // of its wheels
   /// Motions are those at theta of a step. Rates are in its middle, this much earlier, s, and so
   /// are yaw and y, on which creep depends: where it looks ahead of its rates the vehicle hunts too
   /// late. z and roll, by which the contact's stiff spring is pressed, stay together.
@@ -41,6 +49,7 @@ struct WheelsetLaw {
   /// [2] where its wheels touch by their profiles, of find_contacts(); null: treads are cones.
   ProfileWheel* profile;
   double kept[2][kWheelForces];  // State::wheel_force of the last evaluation
+  double creepage[2][3];         // State::creepage
   bool lost;                     // a wheel was free there
   bool slides;                   // the creep of a wheel has saturated
   bool at_edge;                  // a wheel touches at the end of a profile
@@ -73,8 +82,8 @@ struct WheelsetLaw {
                         double* steep) const noexcept;
 };
 
-/// The law of a wheelset without its rates at zero.
-WheelsetLaw law_of(const RunnerStage& at, int wheelset, bool seated) noexcept;
+/// The law of a wheelset without its rates at zero. @param s  at the stage's start
+WheelsetLaw law_of(const RunnerStage& at, int wheelset, bool seated, const State& s) noexcept;
 
 /// Events of the last evaluation: contact_lost, full_slip, beyond_profile.
 Status events_of(const WheelsetLaw& law) noexcept;

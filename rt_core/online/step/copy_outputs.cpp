@@ -38,6 +38,8 @@ void copy_published(const Model& model, const Outputs& from, Outputs& to) noexce
   copy(from.wheelset_y, to.wheelset_y, sets);
   copy(from.wheelset_yaw, to.wheelset_yaw, sets);
   copy(from.drive_force, to.drive_force, model.runners);
+  copy(from.runner_way, to.runner_way, model.runners);
+  copy(from.runner_speed, to.runner_speed, model.runners);
   copy(from.rod_tension, to.rod_tension, model.runner_rods);
   copy(from.stop_force, to.stop_force, model.runner_stops);
   copy(from.external_on_rail, to.external_on_rail, model.external_wheels);

@@ -37,6 +37,8 @@ inline constexpr OutputColumn<kMaxRunnerWheelsets> kRunnerWheelsetColumns[] = {
     {"y_m", &Outputs::wheelset_y},
     {"yaw_rad", &Outputs::wheelset_yaw}};
 inline constexpr OutputColumn<kMaxRunners> kRunnerColumns[] = {{"drive_n", &Outputs::drive_force}};
+inline constexpr OutputColumn<kMaxRunners> kFreeRunnerColumns[] = {
+    {"x_m", &Outputs::runner_way}, {"speed_m_per_s", &Outputs::runner_speed}};
 inline constexpr OutputColumn<kMaxRunnerRods> kRodColumns[] = {{"force_n", &Outputs::rod_tension}};
 inline constexpr OutputColumn<kMaxRunnerStops> kBumpStopColumns[] = {
     {"force_n", &Outputs::stop_force}};
@@ -110,7 +112,11 @@ void for_each_column(const Model& model, Visit& visit) {
     visit(ColumnOf::runner_wheel, i, kRunnerWheelColumns);
   for (std::int32_t i = 0; i < model.runner_wheelsets; ++i)
     visit(ColumnOf::runner_wheelset, i, kRunnerWheelsetColumns);
-  for (std::int32_t i = 0; i < model.runners; ++i) visit(ColumnOf::runner, i, kRunnerColumns);
+  for (std::int32_t i = 0; i < model.runners; ++i)
+    if (model.runner[i].rolls_freely != 0)
+      visit(ColumnOf::runner, i, kFreeRunnerColumns);
+    else
+      visit(ColumnOf::runner, i, kRunnerColumns);
   for (std::int32_t i = 0; i < model.runner_rods; ++i) visit(ColumnOf::rod, i, kRodColumns);
   for (std::int32_t i = 0; i < model.runner_stops; ++i)
     visit(ColumnOf::bump_stop, i, kBumpStopColumns);
