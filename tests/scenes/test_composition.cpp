@@ -98,6 +98,10 @@ const std::vector<Partner> kPartners = {
       "joint=[{name=\"pin\",kind=\"revolute\",between=[\"rail right\",\"bar\"],"
       "point_m=[24.0,-0.75,-0.1],axis=[1,0,0]}]"},
      Partner::ends},
+    {"a brake",
+     {"vehicle[0].brake=[{name=\"disc\",wheelset=\"leading_1\",on=\"bogie_1\","
+      "table=[[0.0,0.0],[0.01,2e3]]}]"},
+     Partner::nothing},
     {"a drive by force", {"vehicle[0].drive=\"force\""}, Partner::standing},
     {"rails with a cant", {"rail.cant=\"1:40\""}, Partner::rails},
     {"rails that differ", {"rail.right.young_pa=1.9e11"}, Partner::rails},

@@ -76,18 +76,94 @@ HardResult off_the_rails(const std::filesystem::path& scene) {
   return result;
 }
 
+// H55 ------------------------------------------------------------------------------------------
+
+/// A column at the row nearest to a time.
+double at_time(const HardRun& run, const std::vector<double>& column, double time) {
+  const std::vector<double>& times = run.column("time_s");
+  const auto row = std::lower_bound(times.begin(), times.end(), time - 1e-9) - times.begin();
+  return column[static_cast<std::size_t>(row)];
+}
+
+HardResult stop_on_slope(const std::filesystem::path& scene) {
+  constexpr double kSteel = 12e3, kTurning = 100. / (.46 * .46), kPush = 3531.6;  // kg, kg, N
+  const HardRun run(scene);
+  const std::vector<double>& x = run.column("wheelset.x_m");
+  HardResult result;
+  result.checks = {holds("full slip is the one status bit", run.status() == "full_slip"),
+                   off_by("it slides to a stand with mu g: way over that", at_time(run, x, 4.95),
+                          100. / (2. * .3 * 9.81), .02),
+                   {"moved from 10 to 604 s, over 1 um",
+                    std::fabs(at_time(run, x, 604.) - at_time(run, x, 10.)) / 1e-6, 2e-3},
+                   off_by("speed 5 s after the brake opens", run.last("wheelset.speed_m_per_s"),
+                          kPush * 4.99 / (kSteel + kTurning), 2e-3)};
+  check_energy(result, run, "", 1e-4, 1e-4);
+  result.picture = {"time, s", "way, m", {run.curve("wheelset.x_m", "wheelset")}};
+  result.frame_us = run.frame_us();
+  return result;
+}
+
+// H56 ------------------------------------------------------------------------------------------
+
+HardResult wheelspin(const std::filesystem::path& scene) {
+  const HardRun run(scene), fine(scene, {"step.dt_s=5e-4", "step.frame_s=1e-3"});
+  const char* const speed = "wheelset.speed_m_per_s";
+  HardResult result;
+  result.checks = {
+      holds("full slip is the one status bit", run.status() == "full_slip"),
+      off_by("speed at 2 s over mu g t", at_time(run, run.column(speed), 2.), .3 * 9.81 * 2., .01),
+      {"way at half the step, over all of it",
+       largest_gap(run.column("wheelset.x_m"), fine.column("wheelset.x_m")) /
+           run.largest("wheelset.x_m"),
+       1e-3},
+      {"speed at the end, over 1 m/s", std::fabs(run.last(speed)), 1e-6}};
+  check_energy(result, run, "", 1e-4, 1e-4);
+  result.picture = {"time, s", "speed, m/s", {run.curve(speed, "wheelset")}};
+  result.frame_us = run.frame_us();
+  return result;
+}
+
+// H57 ------------------------------------------------------------------------------------------
+
+HardResult bad_profiles(const std::filesystem::path& scene) {
+  const auto said_of = [&](const char* file) {
+    return refusal(scene, {std::string("contact.wheel_profile=\"profiles/") + file + "\""});
+  };
+  const HardRun run(scene);
+  HardResult result;
+  result.checks = {holds("a kink is refused, with its place",
+                         said_of("kink.toml").find("kink at -24.8305 mm") != std::string::npos),
+                   holds("metres under keys of millimetres are refused",
+                         said_of("metres.toml").find("flange_back_mm = -0.07 is out of range") !=
+                             std::string::npos),
+                   holds("the wheel as it is runs", run.status().empty())};
+  result.picture = {"time, s", "wheel load, kN", {run.curve(kLoads[0], "left", 1e-3)}};
+  result.frame_us = run.frame_us();
+  return result;
+}
+
 }  // namespace
 
 std::vector<HardCase> profile_cases() {
-  return {{"H52", "h52_contact_jumps", "A wheelset passes every jump of its profiles' contacts",
-           "Contacts leap from the tread to the throat and to the flange, by up to 11 mm.",
-           "Half the step; loads that do not leap; energy.", contact_jumps},
-          {"H53", "h53_flange_entry", "A wheelset runs into its flange at 0.4 m/s",
-           "Two patches of one wheel share a blow, and the contact goes to a plane of 70 degrees.",
-           "Half the step, energy.", flange_entry},
-          {"H54", "h54_off_the_rails", "A wheelset is pushed off its rails",
-           "Wheels beside their rails have neither force nor geometry.",
-           "Status bits, finite numbers.", off_the_rails}};
+  return {
+      {"H52", "h52_contact_jumps", "A wheelset passes every jump of its profiles' contacts",
+       "Contacts leap from the tread to the throat and to the flange, by up to 11 mm.",
+       "Half the step; loads that do not leap; energy.", contact_jumps},
+      {"H53", "h53_flange_entry", "A wheelset runs into its flange at 0.4 m/s",
+       "Two patches of one wheel share a blow, and the contact goes to a plane of 70 degrees.",
+       "Half the step, energy.", flange_entry},
+      {"H54", "h54_off_the_rails", "A wheelset is pushed off its rails",
+       "Wheels beside their rails have neither force nor geometry.", "Status bits, finite numbers.",
+       off_the_rails},
+      {"H55", "h55_stop_on_slope", "A wheelset locks, slides, stops, stands on 3 % and rolls away",
+       "At a standstill creep over the speed has no meaning, and what is left of it adds up.",
+       "mu g, no drift in ten minutes, the push over the mass; energy.", stop_on_slope},
+      {"H56", "h56_wheelspin", "Wheels spin at a standstill and are caught by a brake",
+       "Full slip along the rail at creepages far beyond 1, from and to a standstill.",
+       "mu g t; half the step; energy.", wheelspin},
+      {"H57", "h57_bad_profiles", "Profiles with a kink and in the wrong unit",
+       "A kink has no patch, and numbers in another unit look like numbers.",
+       "Refused, with the place.", bad_profiles}};
 }
 
 }  // namespace railstep

@@ -1,4 +1,4 @@
-#include <fmt/core.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
@@ -162,6 +162,46 @@ OuterForce read_force_in_space(const Table& t, const Runner& runner,
   return read_body_force(t, kMotions * body + motion, motion >= index_of(BodyMotion::roll), inputs);
 }
 
+/// [[vehicle.brake]] on a wheelset.
+RunnerStop read_brake(const Table& t, const Runner& runner, std::vector<InputScene>& inputs) {
+  RunnerStop brake{};
+  brake.name = checked_name(t, "name", t.string("name"));
+  const std::vector<std::string> names = body_names(runner);
+  const auto body_of = [&](const char* key, const std::string& name) {
+    const auto found = std::find(names.begin(), names.end(), name);
+    if (found == names.end())
+      t.refuse(key, "E-VEHICLE-30",
+               fmt::format("{} = \"{}\" is not a body of the vehicle; expected one of {}", key,
+                           name, fmt::join(names, ", ")));
+    return static_cast<int>(found - names.begin());
+  };
+  brake.a = body_of("wheelset", t.string("wheelset"));
+  const RunnerBody& wheelset = runner.bodies[static_cast<std::size_t>(brake.a)];
+  if (!wheelset.is_wheelset())
+    t.refuse("wheelset", "E-VEHICLE-30",
+             fmt::format("wheelset = \"{}\" has no wheels; expected a wheelset", wheelset.name));
+  const std::string on = t.string("on");
+  brake.b = on == "ground" ? kGround : body_of("on", on);
+  if (brake.b == brake.a)
+    t.refuse("on", "E-VEHICLE-30",
+             "a brake acts between a wheelset and itself; expected another body, or \"ground\"");
+  brake.axis = index_of(BodyMotion::pitch);
+  brake.law.stiffness = t.number("stiffness_n_m_per_rad", above_upto(0.0, 1e12), 1e7);
+  brake.law.damping = t.number("damping_n_m_s_per_rad", between(0.0, 1e12), 5e4);
+  brake.law.per_way = 1. / wheelset.radius;
+  const OuterForce limit = read_body_force(t, 0, true, inputs);
+  brake.limit = limit.table;
+  brake.law.limit.input = limit.input;
+  for (std::size_t i = 1; i < brake.limit.size(); i += 2)
+    if (!(brake.limit[i] >= 0.))
+      t.refuse(
+          "table", "E-VEHICLE-31",
+          fmt::format("a brake has the moment {:.15g} N m; expected 0 or more: it acts against "
+                      "the wheelset's turn",
+                      brake.limit[i]));
+  return brake;
+}
+
 }  // namespace
 
 std::vector<std::string> body_names(const Runner& runner) {
@@ -209,6 +249,10 @@ RailVehicleScene read_rail_vehicle(const Table& root, const Table& t, const Scen
   v.speeds = speed.speeds;
   for (const Table& force : t.tables("force"))
     v.forces.push_back(read_force_in_space(force, v.runner, inputs));
+  for (const Table& brake : t.tables("brake")) {
+    v.runner.stops.push_back(read_brake(brake, v.runner, inputs));
+    v.bump_stops.push_back(v.name + "." + v.runner.stops.back().name);
+  }
   return v;
 }
 

@@ -10,8 +10,8 @@ namespace {
 // One wheel on its rail: forces alone, and with their slopes.
 constexpr Cost kWheel = branching(600, 250), kWheelSlopes = branching(2600, 2600);
 // By profiles: where it touches, then forces of its patches alone and with their slopes.
-constexpr Cost kFind = branching(32000, 16000), kPatches = branching(7500, 4500),
-               kPatchesSlopes = branching(11000, 11000);
+constexpr Cost kFind = branching(56000, 28000), kPatches = branching(17000, 9500),
+               kPatchesSlopes = branching(24000, 23000);
 
 /// One evaluation of a law of creep with its slopes, beyond linear creep.
 Cost creep_cost(const RollingCreep& creep) {
@@ -63,6 +63,16 @@ Cost newton_cost(const WheelsCost& of, std::int64_t scalars, std::int64_t n) {
          of.find + of.force + work(6 * n, 3 * n * n);
 }
 
+/// Limits, rates and turns of the brakes of a runner, once.
+Cost brakes_cost(const RunnerModel& runner) {
+  Cost sum{};
+  for (std::int32_t j = 0; j < runner.stops; ++j)
+    if (is_brake(runner.stop[j]))
+      sum = sum + table_cost(runner.stop[j].limit.points) + table_cost(runner.travel.rows) +
+            work(4 * std::int64_t{runner.size} + 40, 4 * std::int64_t{runner.size} + 20);
+  return sum;
+}
+
 }  // namespace
 
 Cost runners_cost(const Model& model) {
@@ -81,7 +91,7 @@ Cost runners_cost(const Model& model) {
           work(held * (2 * n + 2 * motions + (2 * n + 2) * own.stops),
                held * (2 * n + motions + 2 * n * own.stops)) +
           solved + 3 * table_cost(own.travel.rows) + forces_cost(own.force, own.forces) +
-          own.wheelsets * (branching(40, 40) + model.signals * kSignal);
+          own.wheelsets * (branching(40, 40) + model.signals * kSignal) + brakes_cost(own);
   }
   return sum;
 }
@@ -110,7 +120,8 @@ Cost publish_runners_cost(const Model& model) {
     const std::int64_t n = own.size;
     const std::int64_t rows = own.rods + own.stops;
     sum = sum + rows * (work(2 * n, 2 * n) + branching(10, 5)) +
-          own.wheelsets * table_cost(own.travel.rows) + own.wheelsets * branching(40, 40);
+          own.wheelsets * table_cost(own.travel.rows) + own.wheelsets * branching(40, 40) +
+          brakes_cost(own);
   }
   return sum;
 }

@@ -84,7 +84,7 @@ StoredEnergy EnergyAccount::stored(const Standing& at) const {
   }
   sum.hertz = at.contacts.hertz;
   for (std::size_t i = 0; i < at.runners.size(); ++i) {
-    const RunnerEnergy own = runner_energy(model_.runner[i], at.runners[i], at.state);
+    const RunnerEnergy own = runner_energy(model_, model_.runner[i], at.runners[i], at.state);
     sum.kinetic += own.kinetic;
     sum.strain += own.strain;
     sum.hertz += own.contact;

@@ -67,23 +67,38 @@ Eigen::VectorXd forces_of(const RunnerModel& runner, const StandingRunner& stand
   return force;
 }
 
-/// Forces of the bump stops over all coordinates.
-Eigen::VectorXd stop_forces(const RunnerModel& runner, const BodiesVector& u) {
+/// Forces of the stops over all coordinates.
+Eigen::VectorXd stop_forces(const Model& model, const RunnerModel& runner, const State& at) {
   Eigen::VectorXd force = Eigen::VectorXd::Zero(runner.size);
-  for (std::int32_t j = 0; j < runner.stops; ++j) {
-    const BodiesVector row(runner.stop_row + std::ptrdiff_t{runner.size} * j, runner.size);
-    force += stop_force(runner.stop[j], row.dot(u)).force * row;
-  }
+  for (std::int32_t j = 0; j < runner.stops; ++j)
+    force += standing_stop(model, runner, j, at).force.force *
+             BodiesVector(runner.stop_row + std::ptrdiff_t{runner.size} * j, runner.size);
   return force;
 }
 
-double stop_energy(const RunnerModel& runner, const BodiesVector& u) {
+double stop_energy(const Model& model, const RunnerModel& runner, const State& at) {
   double sum = 0.;
   for (std::int32_t j = 0; j < runner.stops; ++j)
-    sum += stop_force(
-               runner.stop[j],
-               BodiesVector(runner.stop_row + std::ptrdiff_t{runner.size} * j, runner.size).dot(u))
-               .energy;
+    sum += standing_stop(model, runner, j, at).force.energy;
+  return sum;
+}
+
+/// Energy that stops take from a vehicle in a step, J: bump stops by numerical loss, brakes by
+/// friction.
+struct StopWork {
+  double loss = 0., friction = 0.;
+};
+StopWork stop_work(const Model& model, const RunnerModel& runner, const State& from,
+                   const State& to) {
+  StopWork sum;
+  for (std::int32_t j = 0; j < runner.stops; ++j) {
+    const StandingStop a = standing_stop(model, runner, j, from),
+                       b = standing_stop(model, runner, j, to);
+    const double taken =
+        .5 * (a.force.force + b.force.force) * (b.z - a.z) + (b.force.energy - a.force.energy);
+    (is_brake(runner.stop[j]) ? sum.friction : sum.loss) +=
+        is_brake(runner.stop[j]) ? -taken : taken;
+  }
   return sum;
 }
 
@@ -243,8 +258,8 @@ StandingRunner standing_runner(const Model& model, const RunnerModel& runner, co
   return standing;
 }
 
-RunnerEnergy runner_energy(const RunnerModel& runner, const StandingRunner& standing,
-                           const State& at) {
+RunnerEnergy runner_energy(const Model& model, const RunnerModel& runner,
+                           const StandingRunner& standing, const State& at) {
   SuspendedEnergy own = suspended_energy(runner, at);
   for (int i = 0; i < runner.wheelsets; ++i) {  // spins with the part that goes with the speed
     const RunnerWheelset& set = runner.wheelset[i];
@@ -252,8 +267,8 @@ RunnerEnergy runner_energy(const RunnerModel& runner, const StandingRunner& stan
                  beyond = at.v[runner.first + set.first + index_of(BodyMotion::pitch)];
     own.kinetic += set.spin_inertia * roll * (beyond + .5 * roll);
   }
-  return {own.kinetic, own.strain + stop_energy(runner, part_of(runner, at.u)),
-          contact_energy(standing), residual_energy(standing)};
+  return {own.kinetic, own.strain + stop_energy(model, runner, at), contact_energy(standing),
+          residual_energy(standing)};
 }
 
 RunnerWork runner_work(const Model& model, const RunnerModel& runner, const StandingRunner& before,
@@ -271,9 +286,9 @@ RunnerWork runner_work(const Model& model, const RunnerModel& runner, const Stan
   RunnerWork work{suspended_work(model, runner, from, to), contact.drive, contact.creep};
   work.loss += (contact.on_bodies + contact.on_seats) +
                (contact_energy(after) - contact_energy(before)) + contact.creep - contact.drive;
-  const BodiesVector u0 = part_of(runner, from.u), u1 = part_of(runner, to.u);
-  work.loss += .5 * (stop_forces(runner, u0) + stop_forces(runner, u1)).dot(du) +
-               (stop_energy(runner, u1) - stop_energy(runner, u0));
+  const StopWork stops = stop_work(model, runner, from, to);
+  work.loss += stops.loss;
+  work.creep += stops.friction;
   work.drive -= contact.on_seats - contact.on_lines - residual;
   add_spin_work(model, runner, before, from, after, to, work);
   // The frames accelerate.
@@ -285,8 +300,7 @@ RunnerWork runner_work(const Model& model, const RunnerModel& runner, const Stan
 
 double runner_unbalanced(const Model& model, const RunnerModel& runner,
                          const StandingRunner& standing, const State& at, const State& after) {
-  const Eigen::VectorXd force =
-      forces_of(runner, standing) + stop_forces(runner, part_of(runner, at.u));
+  const Eigen::VectorXd force = forces_of(runner, standing) + stop_forces(model, runner, at);
   return suspended_unbalanced(model, runner, force, at, after);
 }
 

@@ -34,8 +34,8 @@ StandingRunner standing_runner(const Model& model, const RunnerModel& runner, co
 struct RunnerEnergy {
   double kinetic, strain, contact, residual;
 };
-RunnerEnergy runner_energy(const RunnerModel& runner, const StandingRunner& standing,
-                           const State& at);
+RunnerEnergy runner_energy(const Model& model, const RunnerModel& runner,
+                           const StandingRunner& standing, const State& at);
 
 /// Flows of energy in a step between two states, J. Means over the step are trapezoidal.
 /// `loss` also has the work of the mean force of a contact beyond its spring's energy, its creep
@@ -43,7 +43,8 @@ RunnerEnergy runner_energy(const RunnerModel& runner, const StandingRunner& stan
 struct RunnerWork : SuspendedWork {
   double drive;  // of the drive: against creep and acceleration, over uneven rails, and along rails
                  // that give way
-  double creep;  // by creep, not below 0
+  double
+      creep;  // by creep and the friction of brakes; of linear creep that keeps nothing not below 0
 };
 RunnerWork runner_work(const Model& model, const RunnerModel& runner, const StandingRunner& before,
                        const State& from, const StandingRunner& after, const State& to);

@@ -62,14 +62,18 @@ Eigen::MatrixXd interface_compliance(const RunnerModel& runner, const Eigen::Mat
   return .5 * (part + part.transpose());
 }
 
-void add_stops(const RunnerMatrices& m, Model& model, RunnerModel& packed) {
+/// @param keep  takes a table into the model's own memory
+template <typename Keep>
+void add_stops(const RunnerMatrices& m, const Keep& keep, Model& model, RunnerModel& packed) {
   packed.first_stop = model.runner_stops;
   for (const RunnerMatrices::Stop& stop : m.stops) {
     if (packed.stops == kMaxStopsOfRunner)
       refuse("E-PACK-57",
              "a rail vehicle has more bump stops than a model takes; expected at most " +
                  std::to_string(kMaxStopsOfRunner));
-    packed.stop[packed.stops++] = stop.law;
+    StopModel& own = packed.stop[packed.stops++] = stop.law;
+    own.limit.points = static_cast<std::int32_t>(stop.limit.size() / 2);
+    own.limit.table = stop.limit.empty() ? nullptr : keep(stop.limit);
     ++model.runner_stops;
   }
 }
@@ -82,6 +86,16 @@ void add_rods(const RunnerMatrices& m, Model& model, RunnerModel& packed) {
     refuse("E-PACK-59", "rail vehicles have more rigid rods than a model takes; expected at most " +
                             std::to_string(kMaxRodsOfRunner) + " of one and " +
                             std::to_string(kMaxRunnerRods) + " of all");
+}
+
+/// Forces by a unit of x of all bodies: of what holds to the ground, without rounding of the rest.
+Eigen::MatrixXd stiffness_by_way(const Eigen::MatrixXd& K, std::int32_t bodies) {
+  Eigen::VectorXd sum = Eigen::VectorXd::Zero(K.rows()), size = sum;
+  for (std::int32_t b = 0; b < bodies; ++b) {
+    sum += K.col(kMotions * b);
+    size += K.col(kMotions * b).cwiseAbs();
+  }
+  return (sum.cwiseAbs().array() > 1e-9 * size.array()).select(sum, 0.);
 }
 
 void add_wheelsets(const Runner& runner, Model& model, RunnerModel& packed) {
@@ -140,7 +154,8 @@ void PackedModel::add_runner(const Track& track, const RailVehicle& vehicle) {
   RunnerModel& packed = model_.runner[model_.runners];
   packed.bodies = static_cast<std::int32_t>(vehicle.runner.bodies.size());
   add_wheelsets(vehicle.runner, model_, packed);
-  add_stops(matrices, model_, packed);
+  add_stops(
+      matrices, [this](const std::vector<double>& table) { return keep(table); }, model_, packed);
   add_rods(matrices, model_, packed);
   packed.start = model_.lines > 0 ? model_.endless.origin + vehicle.start : vehicle.start;
   packed.rolls_freely = vehicle.rolls_freely ? 1 : 0;
@@ -148,6 +163,8 @@ void PackedModel::add_runner(const Track& track, const RailVehicle& vehicle) {
   packed.travel = keep_travel(vehicle.rolls_freely ? 0. : vehicle.speed, vehicle.speeds);
   packed.contact = vehicle.contact;
   keep_profiles(packed.contact.profiles.pair);
+  if (vehicle.rolls_freely)
+    packed.by_way = keep(column_by_column(stiffness_by_way(m.stiffness, packed.bodies)));
   const SuspendedResponse step = add_suspended(m, vehicle.forces, packed);
   const Eigen::MatrixXd stops = stop_rows(matrices, n);
   const Eigen::MatrixXd compliance =

@@ -10,6 +10,9 @@ namespace railstep {
 /// loads and weights act from step 0 on.
 std::vector<double> start_released(const PackedModel& packed);
 
+/// Gives a rail vehicle that rolls freely its speed, and its wheels their spins.
+void start_rolling(const RunnerModel& runner, State& state);
+
 /// Puts falling vehicles at their height and speed, with the acceleration of free fall.
 /// @param memory  of the model's state
 void put_falling(const Model& model, const std::vector<RunningVehicle>& vehicles,

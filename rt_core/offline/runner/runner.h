@@ -41,13 +41,15 @@ struct RunnerElement {
 };
 
 /// A bump stop between two bodies: a spring along an axis of the track that presses once body `a`
-/// has moved against `b` by more than a gap.
+/// has moved against `b` by more than a gap. Or the brake of wheelset `a`, whose moment acts
+/// against `b`, with a limit by a table or an input.
 struct RunnerStop {
   std::string name;
-  int a, b;                     // bodies; one of them may be kGround
-  std::array<double, 3> point;  // at rest, as RunnerBody::centre
-  int axis;                     // 0 x, 1 y, 2 z
-  StopModel law;
+  int a, b;                        // bodies; one of them may be kGround
+  std::array<double, 3> point;     // at rest, as RunnerBody::centre
+  int axis;                        // 0 x, 1 y, 2 z; of a brake BodyMotion::pitch
+  StopModel law;                   // its limit has no table
+  std::vector<double> limit = {};  // of a brake: t (s), N m, t, N m, ...
 };
 
 /// A rail vehicle: rigid bodies in space on a suspension, with wheels on both rails.

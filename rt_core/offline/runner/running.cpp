@@ -126,15 +126,22 @@ void roll_wheelsets(const Runner& runner, const RollingContact& contact, double 
   for (std::size_t b = 0; b < runner.bodies.size(); ++b) {
     if (!runner.bodies[b].is_wheelset()) continue;
     double& spin = s.rate[first_of(b) + index_of(BodyMotion::pitch)];
+    const auto moment_at = [&](double rate) {
+      spin = rate;
+      double moment = 0.;
+      const auto wheels = wheel_forces(runner, contact, speed, s, rails);
+      for (const WheelForce& wheel : wheels[set])
+        moment += wheel.generalised[index_of(BodyMotion::pitch)];
+      return moment;
+    };
     const double most = kMost * std::fabs(speed) / runner.bodies[b].radius;
     double low = -most, high = most;
-    for (int i = 0; i < kBisections; ++i) {
-      spin = .5 * (low + high);
-      double moment = 0.;
-      for (const WheelForce& wheel : wheel_forces(runner, contact, speed, s, rails)[set])
-        moment += wheel.generalised[index_of(BodyMotion::pitch)];
+    const bool turns = moment_at(low) > 0. && moment_at(high) < 0.;
+    for (int i = 0; i < kBisections && turns; ++i) {
+      const double moment = moment_at(.5 * (low + high));
       (moment > 0. ? low : high) = spin;
     }
+    if (!turns) spin = 0.;
     ++set;
   }
 }
@@ -334,11 +341,13 @@ std::vector<std::array<WheelForce, 2>> wheel_forces(const Runner& runner,
     if (!runner.bodies[b].is_wheelset()) continue;
     const RailsUnder under = rails.empty() ? RailsUnder{} : rails[all.size()];
     std::array<WheelForce, 2> wheels;
+    Rolling rolling(speed);
+    rolling.keeps = true;
     for (const int side : {0, 1}) {
       double u[kMotions];
       place_over_rail(under, side, steady.displacement.data() + first_of(b), u);
       wheels[static_cast<std::size_t>(side)] =
-          force_on_wheel(contact, runner.bodies[b].radius, side == 0 ? 1. : -1., speed,
+          force_on_wheel(contact, runner.bodies[b].radius, side == 0 ? 1. : -1., rolling,
                          {u, under.roll[side]}, steady.rate.data() + first_of(b), RailRate{});
     }
     all.push_back(wheels);

@@ -209,6 +209,18 @@ std::pair<VectorXd, VectorXd> deflection_under(const MatrixXd& K, const MatrixXd
   return {solved.head(n), scale * solved.tail(held)};
 }
 
+VectorXd stop_row(const Runner& runner, const RunnerStop& s, Eigen::Index n) {
+  if (!is_brake(s.law))
+    return (displacement(end_of(runner, s.a, s.point), n) -
+            displacement(end_of(runner, s.b, s.point), n))
+        .row(s.axis);
+  // Suspensions do not turn wheelsets, brakes do.
+  VectorXd row = VectorXd::Zero(n);
+  row[kMotions * s.a + s.axis] = 1.;
+  if (s.b != kGround) row[kMotions * s.b + s.axis] = -1.;
+  return row;
+}
+
 }  // namespace
 
 RunnerMatrices runner_matrices(const Runner& runner, double gravity) {
@@ -244,11 +256,8 @@ RunnerMatrices runner_matrices(const Runner& runner, double gravity) {
     m.stiffness += geometric_stiffness(runner, e);
     m.rest += preload(runner, e);
   }
-  for (const RunnerStop& s : runner.stops) {
-    const Rows moved = displacement(end_of(runner, s.a, s.point), n) -
-                       displacement(end_of(runner, s.b, s.point), n);
-    m.stops.push_back({moved.row(s.axis), s.law});
-  }
+  for (const RunnerStop& s : runner.stops)
+    m.stops.push_back({stop_row(runner, s, n), s.law, s.limit});
   return m;
 }
 
@@ -259,14 +268,15 @@ VectorXd elongation(const Runner& runner, const RunnerElement& element) {
 VectorXd stop_forces(const RunnerMatrices& m, const VectorXd& u) {
   VectorXd sum = VectorXd::Zero(u.size());
   for (const RunnerMatrices::Stop& stop : m.stops)
-    sum += stop_force(stop.law, stop.row.dot(u)).force * stop.row;
+    if (!is_brake(stop.law)) sum += stop_force(stop.law, stop.row.dot(u)).force * stop.row;
   return sum;
 }
 
 MatrixXd stiffness_at(const RunnerMatrices& m, const VectorXd& u) {
   MatrixXd K = m.stiffness;
   for (const RunnerMatrices::Stop& stop : m.stops)
-    K -= stop_force(stop.law, stop.row.dot(u)).slope * stop.row * stop.row.transpose();
+    if (!is_brake(stop.law))
+      K -= stop_force(stop.law, stop.row.dot(u)).slope * stop.row * stop.row.transpose();
   return K;
 }
 

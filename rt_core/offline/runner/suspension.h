@@ -22,9 +22,10 @@ struct RunnerMatrices {
   struct Stop {
     Eigen::VectorXd row;  // [n]
     StopModel law;
+    std::vector<double> limit;  // RunnerStop::limit
   };
-  std::vector<Stop> stops;
-  Eigen::MatrixXd rods;  // [n][rods] elongation of each, which stays 0
+  std::vector<Stop> stops;  // at rest brakes have no moment
+  Eigen::MatrixXd rods;     // [n][rods] elongation of each, which stays 0
 };
 
 /// Forces of the bump stops over the coordinates at a displacement.

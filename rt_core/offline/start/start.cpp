@@ -295,13 +295,12 @@ void release(const RunnerModel& runner, double held, State& state) {
     const RunnerWheelset& set = runner.wheelset[i];
     mass += set.spin_inertia / (set.radius * set.radius);
   }
-  const auto set_rates = [&](std::int32_t k, double per_speed) {
-    state.v[runner.first + k] += per_speed * runner.start_speed;
+  const auto set_acceleration = [&](std::int32_t k, double per_speed) {
     state.a[runner.first + k] = state.g[runner.first + k] = -per_speed * held / mass;
   };
-  for (std::int32_t b = 0; b < runner.bodies; ++b) set_rates(kMotions * b + x, 1.);
+  for (std::int32_t b = 0; b < runner.bodies; ++b) set_acceleration(kMotions * b + x, 1.);
   for (std::int32_t i = 0; i < runner.wheelsets; ++i)
-    set_rates(runner.wheelset[i].first + spin, 1. / runner.wheelset[i].radius);
+    set_acceleration(runner.wheelset[i].first + spin, 1. / runner.wheelset[i].radius);
 }
 
 /// Puts rail vehicles into a state. The rates are those of steady running, and those by which rails
@@ -320,7 +319,12 @@ void put_runners(const PackedModel& packed, const SettledRunners& now, const Set
     const Eigen::VectorXd accelerated =
         constraint_forces_of_acceleration(model.runner[r], .5 * model.scheme.dt);
     reaction[0] = now.steady[r].resistance + accelerated[0];
+    for (std::int32_t j = 0; j < model.runner[r].stops; ++j)
+      if (is_brake(model.runner[r].stop[j]))
+        state.anchor[model.runner[r].first_stop + j] =
+            standing_stop(model, model.runner[r], j, state).z;
     if (model.runner[r].rolls_freely != 0) {
+      start_rolling(model.runner[r], state);
       release(model.runner[r], now.steady[r].resistance, state);
       reaction[0] = 0.;
     }
@@ -335,9 +339,13 @@ void put_runners(const PackedModel& packed, const SettledRunners& now, const Set
     }
   }
   for (std::size_t set = 0; set < now.wheels.size(); ++set)
-    for (const std::size_t side : {0u, 1u})
-      keep_wheel_force(now.wheels[set][side], wheel_force_of(state, static_cast<std::int32_t>(set),
-                                                             static_cast<std::int32_t>(side)));
+    for (const std::size_t side : {0u, 1u}) {
+      const auto of_set = static_cast<std::int32_t>(set), of_side = static_cast<std::int32_t>(side);
+      const WheelForce& wheel = now.wheels[set][side];
+      keep_wheel_force(wheel, wheel_force_of(state, of_set, of_side));
+      if (keeps_creepage(model))
+        std::copy_n(wheel.creepage, 3, creepage_of(state, of_set, of_side));
+    }
 }
 
 }  // namespace

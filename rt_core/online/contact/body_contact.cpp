@@ -59,7 +59,7 @@ void free_vehicles(const Model& model, double time, const State& s, Workspace& w
   for (std::int32_t b = 0; b < model.vehicles; ++b) {
     const SuspendedModel& v = model.vehicle[b];
     double force[kMaxVehicleUnknowns] = {};
-    move_freely(model, v, time, s, w, force, w.solved + v.first);
+    move_freely(model, v, time, s, w, nullptr, force, w.solved + v.first);
   }
 }
 

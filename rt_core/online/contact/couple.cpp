@@ -191,6 +191,16 @@ void solve_all(const Model& model, const Stage& stage, State& s, Workspace& w, C
   if (!settled) result.status = result.status | Status::cap_reached;
 }
 
+/// The same on a track with runners. By itself, so that they take no stack where there are none.
+[[gnu::noinline]] void solve_with_runners(const Model& model, const Stage& stage, State& s,
+                                          Workspace& w, Coupling& c,
+                                          CoupleResult& result) noexcept {
+  CoupledRunners runners;
+  couple_runners(model, stage, s, w, c, runners);
+  solve_all(model, stage, s, w, c, &runners, result);
+  result.status = result.status | move_coupled_runners(model, c, runners, s, w);
+}
+
 void publish_wheels(const Model& model, const Coupling& c, State& state,
                     CoupleResult& result) noexcept {
   for (ContactId i = 0; i < c.contacts; ++i) {
@@ -239,12 +249,10 @@ CoupleResult couple(const Model& model, const Stage& stage, const ExternalContac
   if (model.fixed.count > 0) couple_fixed_ports(model, state, w, c);
   for (ContactId i = 0; i < c.contacts; ++i) c.force[i] = state.contact_force[i];
   if (couples_system(model)) couple_system(model, state, w, c, result.system);
-  const bool has_runners = c.rows > c.contacts;
-  CoupledRunners runners;
-  if (has_runners) couple_runners(model, stage, state, w, c, runners);
-  solve_all(model, stage, state, w, c, has_runners ? &runners : nullptr, result);
-  if (has_runners)
-    result.status = result.status | move_coupled_runners(model, c, runners, state, w);
+  if (c.rows > c.contacts)
+    solve_with_runners(model, stage, state, w, c, result);
+  else
+    solve_all(model, stage, state, w, c, nullptr, result);
   move_track(model, w, c);
   move_bodies(model, c, w);
   if (model.fixed.count > 0) apply_fixed_port_forces(model, c, state, w);

@@ -200,7 +200,7 @@ void couple_runners(const Model& model, const Stage& stage, State& s, Workspace&
     double* const u = w.solved + runner.first;
     move_freely(at, s, w, u);
     const int stop = first_stop(model, all.scalars) + runner.first_stop;
-    find_stops(at, s, w, u, all.z_free + stop, all.motion + stop);
+    find_stops(at, s, w, u, all.z_free + stop, all.motion + stop, w.brake + runner.first_stop);
   }
   for_each_wheelset(model, [&](const RunnerModel& runner, int i, std::int32_t set) noexcept {
     const RunnerStage at = stage_of(model, runner, stage);
@@ -248,8 +248,8 @@ NewtonResult solve_coupled_runners(const Model& model, const Workspace& w, Coupl
       {n, all.scalars + sets + model.runner_stops, w.newton, block, all.z_free,
        w.newton + std::ptrdiff_t{n} * n, kRunnerTolerance},
       [&](int b, const double* at, double* force, const LawSlopes* slopes, double* steep) noexcept {
-        if (b >= all.scalars + sets)
-          return stop_law(stop_of(model, b - all.scalars - sets), *at, force, slopes);
+        const int stop = b - all.scalars - sets;
+        if (stop >= 0) return stop_law(stop_of(model, stop), w.brake + stop, *at, force, slopes);
         if (b >= all.scalars) return all.law[b - all.scalars].evaluate(at, force, slopes, steep);
         const PortForce own = port_force(c.law[b], *at);
         *force = -own.force;
@@ -312,6 +312,8 @@ Status move_coupled_runners(const Model& model, const Coupling& c, const Coupled
       force[kMotions * runner.wheelsets + j] =
           all.force[first_stop(model, all.scalars) + runner.first_stop + j];
     move_by(runner, force, w.solved + runner.first, reactions_of(model, s, runner));
+    keep_brakes(runner, all.motion + first_stop(model, all.scalars) + runner.first_stop,
+                w.brake + runner.first_stop, s);
   }
   return met;
 }

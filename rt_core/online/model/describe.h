@@ -1,6 +1,7 @@
 #pragma once
 #include <initializer_list>
 
+#include "online/model/describe_runner.h"
 #include "online/model/describe_system.h"
 #include "online/model/state.h"
 
@@ -114,13 +115,6 @@ void describe(Archive& a, Model& m, std::int32_t at) {
 }
 
 template <typename Archive>
-void describe(Archive& a, TravelModel& t) {
-  a.real(t.speed);
-  a.count(t.rows, kMostRows);
-  a.reals(t.table, std::int64_t{3} * t.rows);
-}
-
-template <typename Archive>
 void describe(Archive& a, LoadModel& l) {
   for (double& x : l.row) a.real(x);
   a.count(l.rail, 1);
@@ -141,17 +135,6 @@ void describe(Archive& a, SignalModel& s) {
   a.reals(s.coefficient, s.intervals == 0 ? 0 : std::int64_t{s.intervals} + 3);
 }
 
-/// @param directions  the largest direction
-template <typename Archive>
-void describe(Archive& a, BodyForce& f, std::int32_t directions) {
-  a.count(f.direction, directions);
-  std::int32_t input = f.input + 1;  // 0: none
-  a.count(input, kMaxInputs);
-  f.input = input - 1;
-  a.count(f.points, kMostRows);
-  a.reals(f.table, std::int64_t{2} * f.points);
-}
-
 template <typename Archive>
 void describe(Archive& a, ContactLaw& c) {
   for (double* x : {&c.hertz, &c.stiffness, &c.damping}) a.real(*x);
@@ -165,19 +148,6 @@ void describe(Archive& a, FlangeModel& f) {
     a.real(pair[1]);
   }
   a.real(f.tip);
-}
-
-template <typename Archive>
-void describe(Archive& a, SuspendedModel& b, std::int32_t most) {
-  a.count(b.first, kMostUnknowns);
-  a.count(b.size, most);
-  a.real(b.start);
-  describe(a, b.travel);
-  const std::int64_t n = b.size;
-  for (const double** of : {&b.mass, &b.rest}) a.reals(*of, n);
-  for (const double** of : {&b.damping, &b.stiffness, &b.inverse}) a.reals(*of, n * n);
-  a.count(b.forces, kMaxBodyForces);
-  for (std::int32_t i = 0; i < b.forces; ++i) describe(a, b.force[i], most - 1);
 }
 
 template <typename Archive>
@@ -208,72 +178,6 @@ void describe(Archive& a, ContactModel& c, const Model& m) {
   a.real(c.place);
   const std::int64_t n = upright ? m.vehicle[c.bodies].size : 0;
   for (const double** of : {&c.row, &c.moved}) a.reals(*of, n);
-}
-
-template <typename Archive>
-void describe(Archive& a, ProfileTable& t) {
-  a.count(t.points, kMostProfilePoints);
-  a.real(t.first);
-  a.real(t.per_step);
-  a.reals(t.coefficient, 4 * std::int64_t{t.points});
-}
-
-template <typename Archive>
-void describe(Archive& a, ProfileContact& c) {
-  ProfilePair& pair = c.pair;
-  describe(a, pair.wheel);
-  describe(a, pair.rail);
-  const std::int64_t places = pair.wheel.points > 0 ? kSearchStrips : 0;
-  for (const double** of : {&pair.search_place, &pair.search_growth, &pair.search_slope})
-    a.reals(*of, places);
-  for (double* x : {&pair.half_distance, &pair.radius, &pair.modulus, &c.height, &c.point_y,
-                    &c.point_z, &c.poisson})
-    a.real(*x);
-}
-
-template <typename Archive>
-void describe(Archive& a, RollingContact& c) {
-  for (double* x : {&c.slope, &c.half_distance, &c.crown_radius, &c.hertz, &c.relaxation})
-    a.real(*x);
-  RollingCreep& creep = c.creep;
-  auto law = static_cast<std::int32_t>(creep.law);
-  a.count(law, static_cast<std::int32_t>(CreepLaw::polach));
-  creep.law = static_cast<CreepLaw>(law);
-  a.count(creep.strips, kMostStrips);
-  RollingPatch& patch = creep.patch;
-  for (double* x :
-       {&creep.friction[0], &creep.friction[1], &patch.half_length, &patch.half_width, &patch.shear,
-        &patch.growth, &patch.kalker.c11, &patch.kalker.c22, &patch.kalker.c23, &patch.kalker.c33})
-    a.real(*x);
-  describe(a, c.profiles);
-}
-
-template <typename Archive>
-void describe(Archive& a, RunnerModel& r) {
-  describe(a, r, kMaxRunnerUnknowns);
-  a.count(r.rolls_freely, 1);
-  a.real(r.start_speed);
-  a.count(r.bodies, r.size / kMotions);
-  a.count(r.first_wheelset, kMaxRunnerWheelsets);
-  a.count(r.wheelsets, kMaxWheelsetsOfRunner);
-  for (std::int32_t i = 0; i < r.wheelsets; ++i) {
-    RunnerWheelset& w = r.wheelset[i];
-    a.count(w.first, kMaxRunnerUnknowns);
-    for (double* x : {&w.place, &w.radius, &w.spin_inertia}) a.real(*x);
-  }
-  describe(a, r.contact);
-  for (std::int32_t& point : r.load_point) a.count(point, kMaxLoadPoints - 1);
-  a.count(r.stops, kMaxStopsOfRunner);
-  for (std::int32_t i = 0; i < r.stops; ++i)
-    for (double* x : {&r.stop[i].below, &r.stop[i].above, &r.stop[i].stiffness}) a.real(*x);
-  a.count(r.first_stop, kMaxRunnerStops);
-  const std::int64_t n = r.size, meets = interface_size(r);
-  for (const double** of : {&r.stop_row, &r.stop_moved}) a.reals(*of, n * r.stops);
-  a.reals(r.compliance, meets * meets);
-  a.count(r.first_rod, kMaxRunnerRods);
-  a.count(r.rods, kMaxRodsOfRunner);
-  a.reals(r.rod_row, n * r.rods);
-  a.reals(r.reaction, n * constraint_count(r));
 }
 
 template <typename Archive>

@@ -171,10 +171,14 @@ bool contact_is_valid(const RollingContact& c) noexcept {
          (!drawn || profiles_are_valid(c.profiles));
 }
 
-bool stops_are_valid(const RunnerModel& r, std::int32_t first_stop) noexcept {
-  for (std::int32_t i = 0; i < r.stops; ++i)
-    if (!(r.stop[i].below >= 0.) || !(r.stop[i].above >= 0.) || !(r.stop[i].stiffness > 0.))
+bool stops_are_valid(const Model& m, const RunnerModel& r, std::int32_t first_stop) noexcept {
+  for (std::int32_t i = 0; i < r.stops; ++i) {
+    const StopModel& stop = r.stop[i];
+    if (!(stop.below >= 0.) || !(stop.above >= 0.) || !(stop.stiffness > 0.) ||
+        !(stop.per_way >= 0.) || !(stop.damping >= 0.) ||
+        (is_brake(stop) && !force_is_valid(m, stop.limit)))
       return false;
+  }
   return r.first_stop == first_stop && (r.stops == 0 || (r.stop_row && r.stop_moved));
 }
 
@@ -185,9 +189,10 @@ struct RunnerCounts {
 
 /// Wheelsets are among the bodies, and follow those of the runners before, as stops and rods do.
 bool runner_is_valid(const Model& m, const RunnerModel& r, const RunnerCounts& before) noexcept {
-  if (!suspended_is_valid(m, r) || !stops_are_valid(r, before.stops) || r.bodies < 1) return false;
+  if (!suspended_is_valid(m, r) || !stops_are_valid(m, r, before.stops) || r.bodies < 1)
+    return false;
   if (r.first_wheelset != before.wheelsets || r.wheelsets < 1) return false;
-  if (r.rolls_freely != 0 && m.lines > 0 && m.endless.bays != 0) return false;
+  if (r.rolls_freely != 0 && (!r.by_way || (m.lines > 0 && m.endless.bays != 0))) return false;
   if (r.first_rod != before.rods || !r.reaction || (r.rods > 0 && !r.rod_row)) return false;
   for (std::int32_t i = 0; i < r.wheelsets; ++i) {
     const RunnerWheelset& w = r.wheelset[i];

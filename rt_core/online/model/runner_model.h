@@ -58,16 +58,37 @@ inline bool has_profiles(const RollingContact& c) noexcept {
   return c.profiles.pair.wheel.points > 0;
 }
 
-/// A bump stop: a spring beyond a gap against and along its axis.
+/// A bump stop: a spring beyond a gap against and along its axis. Or the brake of a wheelset: a
+/// spring and a damper about its axle that slide at a limit, which is Coulomb friction that holds a
+/// wheel.
 struct StopModel {
-  double below, above;  // gaps, m
-  double stiffness;     // N/m
+  double below, above;   // gaps, m; 0 of a brake
+  double stiffness;      // N/m; N m/rad
+  double damping = 0.;   // of a brake, N m s/rad
+  double per_way = 0.;   // 1/radius of the braked wheels, 1/m; 0 of a bump stop
+  BodyForce limit = {};  // of a brake's moment, N m
+};
+inline bool is_brake(const StopModel& stop) noexcept { return stop.per_way > 0.; }
+/// How a brake is held in a step. The rate of its turn z is `rate` z and `rate_at_zero`.
+struct BrakeHold {
+  double anchor, limit;       // turn at which its spring is slack, rad; N m
+  double rate, rate_at_zero;  // 1/s, rad/s
 };
 struct StopForce {
   double force, slope, energy;  // N, on the body that moves; N/m; J
 };
-/// @param z  displacement along the axis, m
-inline StopForce stop_force(const StopModel& stop, double z) noexcept {
+/// @param z     displacement along the axis, m, or whole turn of the wheelset, rad
+/// @param hold  of a brake
+inline StopForce stop_force(const StopModel& stop, double z, const BrakeHold& hold = {}) noexcept {
+  if (is_brake(stop)) {
+    const double turned = z - hold.anchor;
+    const double held =
+        -stop.stiffness * turned - stop.damping * (hold.rate * z + hold.rate_at_zero);
+    const bool slides = held >= hold.limit || held <= -hold.limit;
+    const double force = !slides ? held : held > 0. ? hold.limit : -hold.limit;
+    return {force, slides ? 0. : -(stop.stiffness + stop.damping * hold.rate),
+            .5 * stop.stiffness * turned * turned};
+  }
   if (z < stop.above && z > -stop.below) return {0., 0., 0.};
   const double pressed = z < stop.above ? z + stop.below : z - stop.above;
   const double force = -stop.stiffness * pressed;
@@ -100,8 +121,9 @@ struct RunnerWheelset {
 /// A vehicle that rolls freely goes as forces drive it: nothing holds its x, and its frame stays
 /// where it starts, so that x holds the way.
 struct RunnerModel : SuspendedModel {
-  std::int32_t rolls_freely;                       // 0 or 1
-  double start_speed;                              // m/s, of one that rolls freely; else 0
+  std::int32_t rolls_freely;  // 0 or 1
+  double start_speed;         // m/s, of one that rolls freely; else 0
+  const double* by_way;       // [size] of one that rolls freely: stiffness over the x of all bodies
   std::int32_t bodies, first_wheelset, wheelsets;  // the first one among those of all runners
   RunnerWheelset wheelset[kMaxWheelsetsOfRunner];
   RollingContact contact;

@@ -30,6 +30,7 @@ struct State {
   /// [wheels of runners][3] creepages along, across and of spin (1/m) of the last step, if any
   /// runner rolls freely.
   double* creepage;
+  double* anchor;      // [stops of runners] BrakeHold::anchor, rad, if there are brakes
   double* reaction;    // [runners + their rods] N, of the last step: of each runner the force ahead
                        // of its drive, then the tensions of its rods
   double* multiplier;  // [wheelsets][kGuideRows] of the guide along x, N, and about z, N m;
@@ -85,7 +86,7 @@ inline std::int64_t newton_doubles(const Model& model) noexcept {
   return most;
 }
 /// Numbers that hold where a wheel touches by its profile, a ProfileWheel (profile_contact.h).
-inline constexpr std::int64_t kProfileWheelDoubles = 440;
+inline constexpr std::int64_t kProfileWheelDoubles = 800;
 /// Those of all wheels of rail vehicles; 0 where all treads are cones.
 inline std::int64_t profile_doubles(const Model& model) noexcept {
   bool any = false;
@@ -114,6 +115,9 @@ inline std::int64_t beside_doubles(const Model& model) noexcept {
          (model.form == Form::banded ? model.line_unknowns : 0);
 }
 
+inline constexpr std::int64_t kBrakeDoubles = 4;
+static_assert(sizeof(BrakeHold) == kBrakeDoubles * sizeof(double));
+
 /// Scratch, meaningless between steps. The caller owns the memory: workspace_doubles() of it.
 struct Workspace {
   double* u_star;  // [unknowns]
@@ -134,6 +138,7 @@ struct Workspace {
   double* newton;      // newton_doubles()
   double* beside;      // beside_doubles()
   double* profile;     // profile_doubles()
+  BrakeHold* brake;    // [stops of runners] if there are brakes
 };
 
 /// Value of an input; 0 if there is no state yet.
@@ -169,11 +174,12 @@ struct Outputs {
   /// By wheelset: force on the track along y, N, then displacement, m, and yaw, rad.
   double wheelset_sum_y[kMaxRunnerWheelsets], wheelset_y[kMaxRunnerWheelsets];
   double wheelset_yaw[kMaxRunnerWheelsets];
-  double drive_force[kMaxRunners];     // ahead on each rail vehicle, which keeps its speed, N
-  /// Of rail vehicles that roll freely: the way of their first body, m, and its speed, m/s.
+  double drive_force[kMaxRunners];  // ahead on each rail vehicle, which keeps its speed, N
+  /// The way of the first body of rail vehicles that roll freely, m, and its speed, m/s; else 0.
   double runner_way[kMaxRunners], runner_speed[kMaxRunners];
   double rod_tension[kMaxRunnerRods];  // N, of the rigid rods of rail vehicles
-  double stop_force[kMaxRunnerStops];  // N, of their bump stops along the axis, on the first body
+  /// N, of their bump stops along the axis, on the first body; N m, of their brakes on wheelsets.
+  double stop_force[kMaxRunnerStops];
   /// The point of the rail under each external wheel at the frame's end.
   bool external_on_rail[kMaxExternalWheels];
   double external_place[kMaxExternalWheels];            // m along the model's elements
@@ -218,9 +224,19 @@ inline bool keeps_creepage(const Model& model) noexcept {
   for (std::int32_t i = 0; i < model.runners; ++i) any = any || model.runner[i].rolls_freely != 0;
   return any;
 }
-/// The creepages of a wheel of a runner, [3], if states keep them.
+inline constexpr int kWheelCreep = 4;
+/// The creepages of a wheel of a runner, [kWheelCreep], if states keep them.
 inline double* creepage_of(const State& state, std::int32_t wheelset, std::int32_t side) noexcept {
-  return state.creepage + std::ptrdiff_t{3} * (2 * wheelset + side);
+  return state.creepage + std::ptrdiff_t{kWheelCreep} * (2 * wheelset + side);
+}
+
+/// Numbers of State::anchor.
+inline std::int64_t anchor_doubles(const Model& model) noexcept {
+  bool any = false;
+  for (std::int32_t i = 0; i < model.runners; ++i)
+    for (std::int32_t j = 0; j < model.runner[i].stops; ++j)
+      any = any || is_brake(model.runner[i].stop[j]);
+  return any ? model.runner_stops : 0;
 }
 
 /// The forces of a runner's constraints, [constraint_count].
@@ -233,10 +249,10 @@ inline double* reactions_of(const Model& model, const State& state,
 inline std::int64_t seat_doubles(const Model& model) noexcept {
   return keeps_seats(model) ? 2LL * kSeatMotions * model.runner_wheelsets : 0;
 }
-/// Numbers of State::wheel_force, State::seat and State::creepage.
+/// Numbers of State::wheel_force, State::seat, State::creepage and State::anchor.
 inline std::int64_t wheel_state_doubles(const Model& model) noexcept {
-  return 2LL * (kWheelForces + (keeps_creepage(model) ? 3 : 0)) * model.runner_wheelsets +
-         seat_doubles(model);
+  return 2LL * (kWheelForces + (keeps_creepage(model) ? kWheelCreep : 0)) * model.runner_wheelsets +
+         seat_doubles(model) + anchor_doubles(model);
 }
 /// Those, and those of State::reaction.
 inline std::int64_t runner_state_doubles(const Model& model) noexcept {
@@ -259,6 +275,7 @@ inline std::int64_t workspace_doubles(const Model& model) noexcept {
   const std::int64_t units = has_units(model) ? 2 * rows : 0;
   return (4 + units + of_modes) * model.unknowns + system_workspace_doubles(model.system) +
          ports * ports + newton_doubles(model) + beside_doubles(model) + profile_doubles(model) +
+         kBrakeDoubles * anchor_doubles(model) +
          (model.external_wheels > 0 ? state_doubles(model) : 0) +
          (model.scheme.stage_fraction > 0. ? 2LL * model.unknowns : 0);
 }
@@ -271,6 +288,8 @@ inline State state_on(const Model& model, double* memory) noexcept {
   double* const runners = ports + model.fixed.count;
   double* const seats = runners + 2LL * kWheelForces * model.runner_wheelsets;
   double* const creepages = seats + seat_doubles(model);
+  double* const anchors =
+      creepages + (keeps_creepage(model) ? 2LL * kWheelCreep * model.runner_wheelsets : 0);
   double* const reactions = runners + wheel_state_doubles(model);
   double* const guides = runners + runner_state_doubles(model);
   double* const system = guides + guide_rows(model);
@@ -286,6 +305,7 @@ inline State state_on(const Model& model, double* memory) noexcept {
           runners,
           seats,
           creepages,
+          anchors,
           reactions,
           guides,
           system,
@@ -306,7 +326,8 @@ inline Workspace workspace_on(const Model& model, double* memory) noexcept {
   double* const of_newton = compliance + ports * ports;
   double* const beside = of_newton + newton_doubles(model);
   double* const profile = beside + beside_doubles(model);
-  double* const external = profile + profile_doubles(model);
+  double* const brake = profile + profile_doubles(model);
+  double* const external = brake + kBrakeDoubles * anchor_doubles(model);
   return {memory,
           memory + n,
           memory + 2 * n,
@@ -321,7 +342,8 @@ inline Workspace workspace_on(const Model& model, double* memory) noexcept {
           compliance,
           of_newton,
           beside,
-          profile};
+          profile,
+          reinterpret_cast<BrakeHold*>(brake)};
 }
 
 /// Copies a state to other memory, without the latched status.

@@ -26,6 +26,7 @@ struct ProfileWheel {
   std::int32_t patches;       // also those that do not touch yet
   bool at_edge;  // a patch reaches the end of a profile, or the wheel is beside its rail
   ProfilePatch patch[kMostZones];
+  ContactSlopes slopes[kMostZones];  // of the last evaluation with slopes
 };
 
 /// The wheels of a wheelset in the workspace, [2]. @param wheelset  among those of all runners

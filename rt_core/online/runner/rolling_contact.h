@@ -236,7 +236,7 @@ struct WheelForce {
   double normal;          // N
   double on_section;      // moment on the rail's section, N m
   double generalised[6];  // over the wheelset's motions, N and N m; the first three are x, y, z
-  double creep_power;     // W; of linear creep not above 0
+  double creep_power;     // W; of linear creep that keeps nothing not above 0
   bool slides;            // ContactCreep::slides()
   double creepage[3];     // State::creepage, if Rolling::keeps
 };

@@ -1,6 +1,7 @@
 #include "online/runner/runner_contact.h"
 
 #include "online/math/dense.h"
+#include "online/runner/body_force.h"
 #include "online/track/travel.h"
 
 namespace railstep {
@@ -26,12 +27,10 @@ void publish_constraints(const Model& model, const RunnerModel& runner, const St
   }
 }
 
-void publish_stops(const RunnerModel& runner, const State& at, Outputs& out) noexcept {
-  for (std::int32_t j = 0; j < runner.stops; ++j) {
-    const double* const row = runner.stop_row + std::ptrdiff_t{runner.size} * j;
-    out.stop_force[runner.first_stop + j] =
-        stop_force(runner.stop[j], dot(row, at.u + runner.first, runner.size)).force;
-  }
+void publish_stops(const Model& model, const RunnerModel& runner, const State& at,
+                   Outputs& out) noexcept {
+  for (std::int32_t j = 0; j < runner.stops; ++j)
+    out.stop_force[runner.first_stop + j] = standing_stop(model, runner, j, at).force.force;
 }
 
 bool has_large_turn(const RunnerModel& runner, const State& at) noexcept {
@@ -89,9 +88,31 @@ double element_place(const Model& model, const RunnerModel& runner, int wheelset
   return (runner.start + (way + at.ahead)) + runner.wheelset[wheelset].place;
 }
 
+BrakeHold brake_hold(const RunnerModel& runner, std::int32_t j, double time,
+                     const State& s) noexcept {
+  const double limit = force_at(runner.stop[j].limit, time, s.input);
+  return {s.anchor[runner.first_stop + j], limit > 0. ? limit : 0., 0., 0.};
+}
+
+StandingStop standing_stop(const Model& model, const RunnerModel& runner, std::int32_t j,
+                           const State& at) noexcept {
+  const StopModel& stop = runner.stop[j];
+  const double* const row = runner.stop_row + std::ptrdiff_t{runner.size} * j;
+  double z = dot(row, at.u + runner.first, runner.size);
+  if (!is_brake(stop)) return {z, stop_force(stop, z)};
+  const double time = static_cast<double>(at.steps) * model.scheme.dt;
+  const Travelled frame = travelled(runner.travel, time);
+  z += stop.per_way * frame.distance;
+  BrakeHold hold = brake_hold(runner, j, time, at);
+  hold.rate_at_zero = dot(row, at.v + runner.first, runner.size) + stop.per_way * frame.speed;
+  return {z, stop_force(stop, z, hold)};
+}
+
 Rolling rolling_of(const RunnerModel& runner, int wheelset, double frame, const double* v,
                    const double* creepage, double dt) noexcept {
-  constexpr double kSlow = 1., kSteady = 1e12;  // m/s, 1/s
+  // Slower than kSlow creep follows slip in a length, and the direction stays as it was below
+  // kStill.
+  constexpr double kSlow = 1., kStill = 1e-3, kSteady = 1e12;  // m/s, m/s, 1/s
   Rolling rolling(frame);
   if (runner.rolls_freely == 0) return rolling;
   const double ahead = frame + v[index_of(BodyMotion::x)],
@@ -99,10 +120,12 @@ Rolling rolling_of(const RunnerModel& runner, int wheelset, double frame, const 
   const double mean = .5 * (std::fabs(ahead) + std::fabs(rim)), slow = 2. - 2. * mean / kSlow;
   const double length = runner.contact.relaxation * (slow > 1. ? 1. : slow > 0. ? slow : 0.);
   const double follows = length * (dt > 0. ? 1. / dt : kSteady);
-  const double sign = ahead + rim < 0. ? -1. : 1.;
-  rolling.over = sign * (mean + follows);
+  const double both = ahead + rim,
+               sign = std::fabs(both) > kStill ? (both < 0. ? -1. : 1.) : creepage[3];
+  const double over = mean + follows > kLeastRolling ? mean + follows : kLeastRolling;
+  rolling.over = sign * over;
   rolling.keeps = true;
-  for (int k = 0; k < 3; ++k) rolling.left[k] = follows * creepage[k];
+  for (int k = 0; k < 3; ++k) rolling.left[k] = (over - mean) * creepage[k];
   rolling.left[2] *= sign;
   return rolling;
 }
@@ -129,7 +152,7 @@ Status publish_runners(const Model& model, const State& at, Outputs& outputs) no
     const RunnerModel& runner = model.runner[n];
     for (int i = 0; i < runner.wheelsets; ++i) publish_wheelset(model, runner, i, at, outputs);
     publish_constraints(model, runner, at, outputs);
-    publish_stops(runner, at, outputs);
+    publish_stops(model, runner, at, outputs);
     if (has_large_turn(runner, at)) met = met | Status::large_turn;
   }
   return met;

@@ -38,10 +38,24 @@ double element_place(const Model& model, const RunnerModel& runner, int wheelset
 /// implicit rule of Euler.
 /// @param frame     speed of the wheelset's frame, m/s
 /// @param v         [6] rates of the wheelset's motions
-/// @param creepage  [3] State::creepage; not looked at where the runner does not roll freely
+/// @param creepage  [kWheelCreep] State::creepage; not looked at where the runner does not roll
+///                  freely
 /// @param dt        time in which the creep has changed since, s; 0: not at all
 Rolling rolling_of(const RunnerModel& runner, int wheelset, double frame, const double* v,
                    const double* creepage, double dt) noexcept;
+
+/// @param j  a brake among the runner's stops
+BrakeHold brake_hold(const RunnerModel& runner, std::int32_t j, double time,
+                     const State& s) noexcept;
+
+/// Displacement of a stop in a state, of a brake with the turn that goes with the frame's way, and
+/// its force.
+struct StandingStop {
+  double z;
+  StopForce force;
+};
+StandingStop standing_stop(const Model& model, const RunnerModel& runner, std::int32_t j,
+                           const State& at) noexcept;
 
 /// Publishes the wheels and wheelsets of all runners, and the forces that hold them at their
 /// places.

@@ -37,13 +37,32 @@ void find_frame_forces(const RunnerStage& at, const State& s, const Workspace& w
   }
 }
 
+/// The way of a runner that rolls freely and the spins of its wheelsets, which grow without end and
+/// strain nothing but what holds to the ground: sums of large numbers would leave a force.
+/// @param force  [size] adds what ground takes of the way
+/// @param from   [size] out
+void leave_way(const RunnerModel& r, const State& s, double* force, double* from) noexcept {
+  const double way = s.u[r.first];
+  for (std::int32_t k = 0; k < r.size; ++k) {
+    from[k] = 0.;
+    force[k] -= r.by_way[k] * way;
+  }
+  for (std::int32_t b = 0; b < r.bodies; ++b) from[kMotions * b] = way;
+  for (std::int32_t i = 0; i < r.wheelsets; ++i) {
+    const std::int32_t spin = r.wheelset[i].first + index_of(BodyMotion::pitch);
+    from[spin] = s.u[r.first + spin];
+  }
+}
+
 }  // namespace
 
 void move_freely(const RunnerStage& at, State& s, const Workspace& w, double* u) noexcept {
   const RunnerModel& r = at.runner;
-  double force[kMaxRunnerUnknowns];
+  double force[kMaxRunnerUnknowns], from[kMaxRunnerUnknowns];
   find_frame_forces(at, s, w, force);
-  move_freely(at.model, r, at.time(at.held), s, w, force, u);
+  const bool free = r.rolls_freely != 0;
+  if (free) leave_way(r, s, force, from);
+  move_freely(at.model, r, at.time(at.held), s, w, free ? from : nullptr, force, u);
   double* const reaction = reactions_of(at.model, s, r);
   for (std::int32_t c = 0; c < constraint_count(r); ++c)
     reaction[c] = dot(r.reaction + std::ptrdiff_t{r.size} * c, force, r.size);
@@ -58,13 +77,21 @@ void find_motion(const RunnerStage& at, int wheelset, const State& s, const Work
     motion.start[k] = s.u[all] + c.theta * ((w.u_star[all] + s.g[all] / c.kg) - s.u[all]);
     motion.rate_at_zero[k] =
         at.held < 1. ? -at.rate * s.u[all] : w.v_star[all] - at.rate * w.u_star[all];
+    const bool grows = k == index_of(BodyMotion::x) || k == index_of(BodyMotion::pitch);
+    if (at.runner.rolls_freely == 0 || !grows) continue;
+    // A way counts from the stage's start: Newton's method ends by the size of its coordinates.
+    motion.free[k] -= s.u[all];
+    motion.start[k] -= s.u[all];
+    motion.rate_at_zero[k] += at.rate * s.u[all];
   }
 }
 
 void find_stops(const RunnerStage& at, const State& s, const Workspace& w, const double* u,
-                double* free, double* start) noexcept {
+                double* free, double* start, BrakeHold* hold) noexcept {
   const RunnerModel& r = at.runner;
   const Scheme& c = at.model.scheme;
+  const double time = at.time(c.theta);
+  const Travelled frame = travelled(r.travel, time);
   const double *u0 = s.u + r.first, *u_star = w.u_star + r.first, *g = s.g + r.first;
   for (std::int32_t j = 0; j < r.stops; ++j) {
     const double* const row = r.stop_row + std::ptrdiff_t{r.size} * j;
@@ -72,15 +99,40 @@ void find_stops(const RunnerStage& at, const State& s, const Workspace& w, const
     free[j] = before + c.theta * (dot(row, u, r.size) - before);
     start[j] =
         before + c.theta * ((dot(row, u_star, r.size) + dot(row, g, r.size) / c.kg) - before);
+    if (!is_brake(r.stop[j])) continue;
+    // Whole turns count from the anchor.
+    hold[j] = brake_hold(r, j, time, s);
+    const double turned = r.stop[j].per_way * frame.distance - hold[j].anchor;
+    hold[j].anchor = 0.;
+    hold[j].rate = at.rate;
+    free[j] += turned;
+    start[j] += turned;
+    hold[j].rate_at_zero =
+        r.stop[j].per_way * frame.speed - at.rate * turned +
+        (at.held < 1. ? -at.rate * before
+                      : dot(row, w.v_star + r.first, r.size) - at.rate * dot(row, u_star, r.size));
   }
 }
 
-void stop_law(const StopModel& stop, double z, double* force, const LawSlopes* slopes) noexcept {
-  const StopForce own = stop_force(stop, z);
+void stop_law(const StopModel& stop, const BrakeHold* hold, double z, double* force,
+              const LawSlopes* slopes) noexcept {
+  const StopForce own = is_brake(stop) ? stop_force(stop, z, *hold) : stop_force(stop, z);
   *force = own.force;
   if (slopes == nullptr) return;
   *slopes->spread = 1.;
   *slopes->slope = own.slope;
+}
+
+void keep_brakes(const RunnerModel& runner, const double* z, const BrakeHold* hold,
+                 State& s) noexcept {
+  for (std::int32_t j = 0; j < runner.stops; ++j) {
+    const StopModel& stop = runner.stop[j];
+    if (!is_brake(stop)) continue;
+    const double most = hold[j].limit / stop.stiffness;
+    double& anchor = s.anchor[runner.first_stop + j];
+    if (z[j] > most) anchor += z[j] - most;
+    if (z[j] < -most) anchor += z[j] + most;
+  }
 }
 
 void move_by(const RunnerModel& runner, const double* force, double* u, double* reaction) noexcept {
@@ -140,13 +192,15 @@ RunnerResult solve_runner(const RunnerStage& at, State& s, Workspace& w) noexcep
     block[i] = {kMotions * i, kMotions, law[i].rank()};
   }
   const std::int32_t motions = kMotions * r.wheelsets;
-  find_stops(at, s, w, u, z_free + motions, z + motions);
+  BrakeHold* const hold = w.brake + r.first_stop;
+  find_stops(at, s, w, u, z_free + motions, z + motions, hold);
   for (std::int32_t j = 0; j < r.stops; ++j) block[r.wheelsets + j] = {motions + j, 1, 1};
   const NewtonResult met = solve_laws(
       {interface_size(r), r.wheelsets + r.stops, r.compliance, block, z_free, w.newton,
        kRunnerTolerance},
       [&](int b, const double* at_z, double* f, const LawSlopes* slopes, double* steep) noexcept {
-        if (b >= r.wheelsets) return stop_law(r.stop[b - r.wheelsets], *at_z, f, slopes);
+        const int stop = b - r.wheelsets;
+        if (stop >= 0) return stop_law(r.stop[stop], hold + stop, *at_z, f, slopes);
         law[b].evaluate(at_z, f, slopes, steep);
       },
       force, z);
@@ -155,6 +209,7 @@ RunnerResult solve_runner(const RunnerStage& at, State& s, Workspace& w) noexcep
   for (int i = 0; i < r.wheelsets && met.status != NewtonStatus::converged; ++i)
     law[i].evaluate(z + kMotions * i, force + kMotions * i, nullptr, steep);
   move_by(r, force, u, reactions_of(at.model, s, r));
+  keep_brakes(r, z + motions, hold, s);
   RunnerResult result{status_of(met.status), met.iterations};
   for (int i = 0; i < r.wheelsets; ++i) {
     result.status = result.status | events_of(law[i]);
@@ -170,8 +225,10 @@ void keep_wheel_forces(const RunnerModel& runner, int wheelset, const WheelsetLa
   const std::int32_t set = runner.first_wheelset + wheelset;
   for (int side = 0; side < 2; ++side) {
     for (int d = 0; d < kWheelForces; ++d) wheel_force_of(s, set, side)[d] = law.kept[side][d];
-    for (int k = 0; k < 3 && runner.rolls_freely != 0; ++k)
-      creepage_of(s, set, side)[k] = law.creepage[side][k];
+    if (runner.rolls_freely == 0) continue;
+    double* const creepage = creepage_of(s, set, side);
+    for (int k = 0; k < 3; ++k) creepage[k] = law.creepage[side][k];
+    creepage[3] = law.rolling[side].over < 0. ? -1. : 1.;
   }
 }
 

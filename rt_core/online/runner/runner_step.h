@@ -17,20 +17,27 @@ void move_freely(const RunnerStage& at, State& s, const Workspace& w, double* u)
 
 /// The motions of one wheelset at the contacts' instant.
 struct WheelsetMotion {
-  double free[kMotions];          // without contact
-  double start[kMotions];         // as the last acceleration leads to it
+  double free[kMotions];   // without contact; x and spin of free runners from the stage's start
+  double start[kMotions];  // as the last acceleration leads to it
   double rate_at_zero[kMotions];  // rates are `rate` times the motions, and this
 };
 /// @param u  of move_freely()
 void find_motion(const RunnerStage& at, int wheelset, const State& s, const Workspace& w,
                  const double* u, WheelsetMotion& motion) noexcept;
 
-/// Displacements of a runner's stops at the contacts' instant. @param free, start  [stops] out
+/// Displacements of a runner's stops at the contacts' instant.
+/// @param free, start  [stops] out
+/// @param hold         [stops] out: of brakes
 void find_stops(const RunnerStage& at, const State& s, const Workspace& w, const double* u,
-                double* free, double* start) noexcept;
+                double* free, double* start, BrakeHold* hold) noexcept;
 
-/// The law of a stop, for solve_laws().
-void stop_law(const StopModel& stop, double z, double* force, const LawSlopes* slopes) noexcept;
+/// The law of a stop, for solve_laws(). @param hold  of a brake
+void stop_law(const StopModel& stop, const BrakeHold* hold, double z, double* force,
+              const LawSlopes* slopes) noexcept;
+
+/// Lets the springs of brakes slide that are beyond their limits. @param z  [stops]
+void keep_brakes(const RunnerModel& runner, const double* z, const BrakeHold* hold,
+                 State& s) noexcept;
 
 /// Adds the displacements by forces on the wheelsets and stops, and the forces of the constraints.
 /// @param force  [interface_size()] @param reaction  [constraint_count()]

@@ -124,7 +124,7 @@ WheelForce WheelsetLaw::on_profile(const Placed& at, int side, const LawSlopes* 
   double over[kMotions];
   place_over_rail(at.under, side, at.u, over);
   const ProfileWheel& wheel = profile[side];
-  ContactSlopes own[kMostZones];
+  ContactSlopes* const own = profile[side].slopes;
   own[0] = {};
   double stiffness[kMostZones] = {};
   const WheelForce f =

@@ -42,6 +42,8 @@ inline constexpr OutputColumn<kMaxRunners> kFreeRunnerColumns[] = {
 inline constexpr OutputColumn<kMaxRunnerRods> kRodColumns[] = {{"force_n", &Outputs::rod_tension}};
 inline constexpr OutputColumn<kMaxRunnerStops> kBumpStopColumns[] = {
     {"force_n", &Outputs::stop_force}};
+inline constexpr OutputColumn<kMaxRunnerStops> kBrakeColumns[] = {
+    {"moment_n_m", &Outputs::stop_force}};
 
 /// A column of the rail under an external wheel.
 struct ExternalColumn {
@@ -118,8 +120,14 @@ void for_each_column(const Model& model, Visit& visit) {
     else
       visit(ColumnOf::runner, i, kRunnerColumns);
   for (std::int32_t i = 0; i < model.runner_rods; ++i) visit(ColumnOf::rod, i, kRodColumns);
-  for (std::int32_t i = 0; i < model.runner_stops; ++i)
-    visit(ColumnOf::bump_stop, i, kBumpStopColumns);
+  for (std::int32_t r = 0; r < model.runners; ++r)
+    for (std::int32_t j = 0; j < model.runner[r].stops; ++j) {
+      const std::int32_t i = model.runner[r].first_stop + j;
+      if (is_brake(model.runner[r].stop[j]))
+        visit(ColumnOf::bump_stop, i, kBrakeColumns);
+      else
+        visit(ColumnOf::bump_stop, i, kBumpStopColumns);
+    }
   for (std::int32_t i = 0; i < model.external_wheels; ++i)
     visit(ColumnOf::external_wheel, i, kExternalColumns);
   visit(model.track_sensor);

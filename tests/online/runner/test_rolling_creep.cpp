@@ -66,7 +66,7 @@ TEST_CASE("derivatives of a contact's creep are those of its forces", "[rolling_
             return creep_at(c, depth + (k == 3 ? by : 0.), s);
           };
           const ContactCreep above = moved(step[k]), below = moved(-step[k]);
-          if (above.slides != below.slides) continue;
+          if (above.slides() != below.slides()) continue;
           const double by_depth = 1.5 * normal_at(depth) / depth;
           for (int i = 0; i < 3; ++i) {
             const double slope = k < 3 ? at.by_slip[i][k] : by_depth * at.by_normal[i];
@@ -95,7 +95,7 @@ TEST_CASE("creep takes work, and is within friction", "[rolling_creep]") {
         const double limit = kFriction[0] * normal_at(depth);
         const double size = std::hypot(at.force[0], at.force[1]) / limit;
         beyond = std::max(beyond, size);
-        if (at.slides) least = std::min(least, size);
+        if (at.slides()) least = std::min(least, size);
       }
       INFO("law " << static_cast<int>(law) << ", grows " << grows);
       CHECK(power <= 0.);
@@ -111,7 +111,7 @@ TEST_CASE("the limit of creep is friction times normal force", "[rolling_creep]"
   for (const int side : {0, 1}) {
     const ContactCreep at =
         contact_creep(c, c.patch, kFriction[side], {depth, 5e4}, {10., 0., 0.}, kSpeed);
-    CHECK(at.slides);
+    CHECK(at.slides());
     CHECK(at.force[0] == Approx(-kFriction[side] * 5e4).epsilon(1e-12));
   }
   CHECK(contact_creep(c, c.patch, .3, {1e-30, 0.}, {1., 0., 0.}, kSpeed).force[0] == 0.);
