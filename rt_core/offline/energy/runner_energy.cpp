@@ -96,8 +96,10 @@ StopWork stop_work(const Model& model, const RunnerModel& runner, const State& f
                        b = standing_stop(model, runner, j, to);
     const double taken =
         .5 * (a.force.force + b.force.force) * (b.z - a.z) + (b.force.energy - a.force.energy);
-    (is_brake(runner.stop[j]) ? sum.friction : sum.loss) +=
-        is_brake(runner.stop[j]) ? -taken : taken;
+    if (is_brake(runner.stop[j]))
+      sum.friction -= taken;
+    else
+      sum.loss += taken;
   }
   return sum;
 }

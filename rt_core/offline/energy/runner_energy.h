@@ -43,8 +43,7 @@ RunnerEnergy runner_energy(const Model& model, const RunnerModel& runner,
 struct RunnerWork : SuspendedWork {
   double drive;  // of the drive: against creep and acceleration, over uneven rails, and along rails
                  // that give way
-  double
-      creep;  // by creep and the friction of brakes; of linear creep that keeps nothing not below 0
+  double creep;  // by creep and by the friction of brakes; a spring at a standstill gives back
 };
 RunnerWork runner_work(const Model& model, const RunnerModel& runner, const StandingRunner& before,
                        const State& from, const StandingRunner& after, const State& to);
