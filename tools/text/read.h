@@ -1,6 +1,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <exception>
 #include <filesystem>
 #include <initializer_list>
 #include <memory>
@@ -72,8 +73,8 @@ class Table {
 
   /// Calls `read` on this root, then finish(), and throws all errors of values together, in the
   /// file's order; where no value is bad, it throws all refusals kept by `attempt`, and the one
-  /// that ended `read`. A refusal may follow from the number that replaces a bad value: so values
-  /// come first.
+  /// that ended `read`. A refusal, and any other exception, may follow from the number that
+  /// replaces a bad value: so values come first.
   template <typename Read>
   auto whole(Read read) const {
     collect();
@@ -82,6 +83,9 @@ class Table {
         return read(*this);
       } catch (const InputError& last) {
         throw_kept(&last);
+        throw;
+      } catch (const std::exception&) {
+        throw_faults();
         throw;
       }
     }();
@@ -126,6 +130,7 @@ class Table {
   void collect() const;
   [[nodiscard]] bool keep(const InputError& refusal) const;  // false outside of `whole`
   void throw_kept(const InputError* last) const;             // if there are any
+  void throw_faults() const;                                 // the same without unknown keys
   explicit Table(std::shared_ptr<const View> view) : view_(std::move(view)) {}
   std::shared_ptr<const View> view_;
 };

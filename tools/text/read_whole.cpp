@@ -63,15 +63,21 @@ bool Table::is_faultless() const {
 
 void Table::throw_kept(const InputError* last) const {
   Document& document = *view_->document;
+  if (last) {
+    document.refusals.push_back(kept_of(*last));
+  } else if (document.refusals
+                 .empty()) {  // all was read: a key that no getter asked for is unknown
+    std::vector<Kept> unknown = unknown_keys(document, *view_->table, view_->name);
+    std::move(unknown.begin(), unknown.end(), std::back_inserter(document.bad_values));
+  }
+  throw_faults();
+}
+
+void Table::throw_faults() const {
+  Document& document = *view_->document;
   document.collects = false;
   std::vector<Kept> bad_values = std::exchange(document.bad_values, {});
   std::vector<Kept> refusals = std::exchange(document.refusals, {});
-  if (last) {
-    refusals.push_back(kept_of(*last));
-  } else if (refusals.empty()) {  // all was read: a key that no getter asked for is unknown
-    std::vector<Kept> unknown = unknown_keys(document, *view_->table, view_->name);
-    std::move(unknown.begin(), unknown.end(), std::back_inserter(bad_values));
-  }
   if (!bad_values.empty()) throw_in_order(std::move(bad_values));
   if (!refusals.empty()) throw_in_order(std::move(refusals));
 }

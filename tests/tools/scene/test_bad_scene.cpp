@@ -50,6 +50,13 @@ TEST_CASE("an unknown key is refused with the nearest known one", "[bad_input][c
                {"bad.toml:9:1", "[track]", "'bay_m'", "'bay'", "E-KEY-01"});
 }
 
+TEST_CASE("a value that the contact of wheels and rails follows from is refused at its own key",
+          "[bad_input][cli]") {
+  for (const char* scene : {"manchester_s1002", "manchester_ring"})
+    run_refuses(shipped(scene), {"rail.crown_radius_m=3e8"},
+                {"[rail]", "crown_radius_m = 300000000 is out of range", "E-KEY-05"});
+}
+
 TEST_CASE("a key given twice is refused at its second place", "[bad_input][cli]") {
   text_refused("bays = 16", "bays = 16\nbays = 3", {"bad.toml:9:", "bays"});
   text_refused(moving_load() + "[support]\nat = \"foot\"\n", {"bad.toml:46:", "support"});
