@@ -28,7 +28,9 @@ Words joined(Words words, const Words& more) {
   return words;
 }
 
-Scene wheelset(const Words& changes = {}) { return read_scene(shipped("s1002_wheelset"), changes); }
+Scene profiled_wheelset(const Words& changes = {}) {
+  return read_scene(shipped("s1002_wheelset"), changes);
+}
 Scene ring(const Words& changes = {}) { return read_scene(shipped("manchester_s1002"), changes); }
 
 /// The profiles of the wheelset under the passenger vehicle, on rigid rails that are rough.
@@ -42,10 +44,10 @@ Words vehicle(double speed) {
 
 /// Growth of a small lateral motion after a short push, 1/s, by its highest points from 4 s on.
 double growth_at(double speed, double dt) {
-  const Traced run(wheelset({key_of("vehicle[0].speed_m_per_s", speed), key_of("step.dt_s", dt),
-                             "step.duration_s=12.0",
-                             "vehicle[0].force[1].table=[[0.0,0.0],"
-                             "[0.05,5.0],[0.15,5.0],[0.2,0.0]]"}));
+  const Traced run(profiled_wheelset({key_of("vehicle[0].speed_m_per_s", speed),
+                                      key_of("step.dt_s", dt), "step.duration_s=12.0",
+                                      "vehicle[0].force[1].table=[[0.0,0.0],"
+                                      "[0.05,5.0],[0.15,5.0],[0.2,0.0]]"}));
   const std::vector<double> y = run["wheelset.axle.y_m"];
   double sums[5] = {};
   for (std::size_t i = static_cast<std::size_t>(4. / dt); i + 1 < y.size(); ++i) {
@@ -76,7 +78,7 @@ double mean_peak(const std::vector<double>& y) {
 TEST_CASE("a wheelset with profiles hunts from its linear critical speed on", "[profile_scene]") {
   // Contacts are found once a step, where it will be at the instant of the scheme's forces. Found
   // at its start instead, runs hunt some per cent too early at 1 ms.
-  const auto linear = critical_speed_between(wheelset(), 45., 55.);
+  const auto linear = critical_speed_between(profiled_wheelset(), 45., 55.);
   REQUIRE(linear);
   for (const auto& [dt, allowed] : {std::pair{1e-3, 3e-4}, {5e-4, 3e-4}}) {
     const double low = growth_at(.995 * linear->speed, dt),
@@ -107,23 +109,24 @@ TEST_CASE("the limit cycle of a wheelset is that of an integration of its tables
     return largest_of(later(scene, from));
   };
   const auto pushed = [](double speed) {
-    return wheelset({key_of("vehicle[0].speed_m_per_s", speed), "step.dt_s=2.5e-4",
-                     "step.duration_s=10.0",
-                     "vehicle[0].force[1].table=[[0.0,0.0],[0.05,4e4],[0.15,4e4],[0.2,0.0]]"});
+    return profiled_wheelset(
+        {key_of("vehicle[0].speed_m_per_s", speed), "step.dt_s=2.5e-4", "step.duration_s=10.0",
+         "vehicle[0].force[1].table=[[0.0,0.0],[0.05,4e4],[0.15,4e4],[0.2,0.0]]"});
   };
   CHECK(mean_peak(later(pushed(50.), .4)) == Approx(6.252e-3).epsilon(.005));
   CHECK(mean_peak(later(pushed(52.), .4)) == Approx(6.244e-3).epsilon(.005));
   CHECK(amplitude(pushed(60.), .5) == Approx(6.581e-3).epsilon(.02));
   // From a cycle at 50 m/s the speed falls by 0.1 m/s each second.
   const auto slowed = [](double to) {
-    return wheelset({"step.dt_s=5e-4", "step.frame_s=5e-3", "step.duration_s=60.0",
-                     "vehicle=[{name=\"wheelset\",file=\"../vehicles/sprung_wheelset.toml\","
-                     "speed_table=[[0.0,55.0],[5.0,50.0],[" +
-                         std::to_string(5. + 10. * (50. - to)) + "," + std::to_string(to) +
-                         "],[1e3," + std::to_string(to) +
-                         "]],force=[{body=\"axle\",direction=\"z\",table=[[0.0,-107741.7]]},"
-                         "{body=\"axle\",direction=\"y\",table=[[0.0,0.0],[0.05,4e4],[0.15,4e4],"
-                         "[0.2,0.0]]}]}]"});
+    return profiled_wheelset(
+        {"step.dt_s=5e-4", "step.frame_s=5e-3", "step.duration_s=60.0",
+         "vehicle=[{name=\"wheelset\",file=\"../vehicles/sprung_wheelset.toml\","
+         "speed_table=[[0.0,55.0],[5.0,50.0],[" +
+             std::to_string(5. + 10. * (50. - to)) + "," + std::to_string(to) + "],[1e3," +
+             std::to_string(to) +
+             "]],force=[{body=\"axle\",direction=\"z\",table=[[0.0,-107741.7]]},"
+             "{body=\"axle\",direction=\"y\",table=[[0.0,0.0],[0.05,4e4],[0.15,4e4],"
+             "[0.2,0.0]]}]}]"});
   };
   CHECK(amplitude(slowed(47.5), .9) > 5e-3);
   CHECK(amplitude(slowed(46.2), .9) < 1e-4);
@@ -135,7 +138,8 @@ TEST_CASE("the energy of vehicles on profiles is balanced", "[profile_scene]") {
     return balance_of(*run.packed(), run.model(), run.model().steps);
   };
   for (const double dt : {1e-3, 5e-4}) {
-    const EnergyBalance rough = balance(wheelset(joined(vehicle(40.), {key_of("step.dt_s", dt)})));
+    const EnergyBalance rough =
+        balance(profiled_wheelset(joined(vehicle(40.), {key_of("step.dt_s", dt)})));
     INFO("step of " << dt << " s: error " << rough.error << ", loss " << rough.numerical_loss);
     CHECK(rough.error < .3 * dt);
     CHECK(std::fabs(rough.numerical_loss) < 1e-4);
@@ -168,7 +172,7 @@ TEST_CASE("on a track that is stiff enough profiles run as on rigid rails", "[pr
   const std::string car =
       "vehicle=[{name=\"car\",file=\"../vehicles/manchester_1.toml\",speed_m_per_s=40.0,"
       "start_m=11.4}]";
-  const Traced rigid(wheelset(
+  const Traced rigid(profiled_wheelset(
       {car, rails, creep, "condense.kind=\"modal\"", "step.duration_s=1.0", "step.dt_s=1e-3"}));
   const Traced stiff(ring(
       {rails, creep, "step.dt_s=1e-3", "step.duration_s=1.0", "support.stiffness_x_n_per_m=5.0e11",
@@ -203,7 +207,7 @@ TEST_CASE("vehicles start on rough rails wherever their wheels touch", "[profile
     words.push_back("contact.rail_profile=\"../profiles/" + std::string(rail) + ".toml\"");
     words.push_back("irregularity.spectrum=\"german_high\"");
     words.push_back("irregularity.seed=" + std::to_string(seed));
-    const Traced run(wheelset(words));
+    const Traced run(profiled_wheelset(words));
     CHECK_FALSE(has(run.status, Status::cap_reached));
     // The start is in equilibrium.
     CHECK(run["car.leading_1_left.q_n"].front() ==
@@ -230,7 +234,7 @@ TEST_CASE("a vehicle with profiles stays as its start has it", "[profile_scene]"
 TEST_CASE("a model with profiles and its snapshots give the same bits", "[profile_scene]") {
   for (const bool seated : {false, true}) {
     const Simulation run(seated ? ring({"step.duration_s=0.1"})
-                                : wheelset(joined(vehicle(40.), {"step.duration_s=0.1"})));
+                                : profiled_wheelset(joined(vehicle(40.), {"step.duration_s=0.1"})));
     Model loaded;
     REQUIRE(read(run.block(), loaded).status == LoadStatus::ok);
     LoadedRun packed(run.packed()->model()), whole(loaded), again(loaded);
@@ -247,8 +251,8 @@ TEST_CASE("a model with profiles and its snapshots give the same bits", "[profil
 }
 
 TEST_CASE("a wheelset that is pushed off its rails says so and steps on", "[profile_scene]") {
-  const Traced run(wheelset({"vehicle[0].force[1].table=[[0.0,0.0],[0.1,3e5]]",
-                             "step.duration_s=0.5", "step.dt_s=1e-3"}));
+  const Traced run(profiled_wheelset({"vehicle[0].force[1].table=[[0.0,0.0],[0.1,3e5]]",
+                                      "step.duration_s=0.5", "step.dt_s=1e-3"}));
   CHECK(has(run.status, Status::beyond_profile));
   CHECK(has(run.status, Status::contact_lost));
   CHECK_FALSE(has(run.status, Status::cap_reached));
