@@ -142,6 +142,53 @@ HardResult bad_profiles(const std::filesystem::path& scene) {
   return result;
 }
 
+// H58 ------------------------------------------------------------------------------------------
+
+/// Force across on a wheel over friction times its normal force, from Q and Y on a cone's plane.
+double force_of_spin(const HardRun& run, double slope, double friction) {
+  const double q = run.last(kLoads[0]), y = run.last("wheelset.axle_left.y_n");
+  return (q * slope - y) / (friction * (q + y * slope));
+}
+
+HardResult spin_alone(const std::filesystem::path& scene) {
+  constexpr double kSlope = .4743416, kFriction = .3;
+  constexpr double kHalfSpace = .5827;  // of CONTACT, for a circle and a normalised spin of 1.5
+  struct Law {
+    const char* name;
+    std::vector<std::string> words;
+    double force, error;  // by the law alone; its own error against the half-space
+  };
+  HardResult result;
+  result.picture = {"time, s", "wheel load, kN", {}};
+  const Law laws[] = {{"she", {}, .752, .2},
+                      {"fastsim", {"contact.creep=\"fastsim\"", "contact.strips=20"}, .658, .1}};
+  for (const Law& law : laws) {
+    const HardRun run(scene, law.words);
+    const std::string at = law.name + std::string(": ");
+    const double force = force_of_spin(run, kSlope, kFriction);
+    result.checks.push_back(
+        off_by(at + "force of the spin, over the law's", force, law.force, 2e-3));
+    result.checks.push_back({at + "off the half-space's, over friction times normal force",
+                             std::fabs(force - kHalfSpace), law.error});
+    result.checks.push_back(
+        {at + "shift of the wheelset, over 1 um", run.largest(kShift) / 1e-6, 1e-6});
+    check_energy(result, run, at, 1e-9, 1e-9);
+    result.picture.curves.push_back(run.curve(kLoads[0], law.name, 1e-3));
+    result.frame_us = run.frame_us();
+  }
+  return result;
+}
+
+// H59 ------------------------------------------------------------------------------------------
+
+HardResult conformal(const std::filesystem::path& scene) {
+  HardResult result = contact_jumps(scene);
+  const HardRun run(scene);
+  result.checks.push_back(
+      holds("the shift passes 7.5 mm, onto the flange", run.last(kShift) > 7.5e-3));
+  return result;
+}
+
 }  // namespace
 
 std::vector<HardCase> profile_cases() {
@@ -163,7 +210,13 @@ std::vector<HardCase> profile_cases() {
        "mu g t; half the step; energy.", wheelspin},
       {"H57", "h57_bad_profiles", "Profiles with a kink and in the wrong unit",
        "A kink has no patch, and numbers in another unit look like numbers.",
-       "Refused, with the place.", bad_profiles}};
+       "Refused, with the place.", bad_profiles},
+      {"H58", "h58_spin_alone", "Wheels that only spin on their contacts",
+       "No slip but a spin that saturates friction, where laws of creep err most.",
+       "The laws' own forces; their error against the half-space; energy.", spin_alone},
+      {"H59", "h59_conformal", "A wheelset with wheels that are worn to their rails",
+       "Patches of 25 mm, along which a contact runs 20 mm within 2 mm of shift.",
+       "Half the step; loads that do not leap; energy.", conformal}};
 }
 
 }  // namespace railstep

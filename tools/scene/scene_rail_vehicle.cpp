@@ -28,17 +28,62 @@ RollingPatch patch_of_profiles(const BarScene& steel) {
   return {1., 1., steel.young / (2. * (1. + steel.poisson)), 1., {}};
 }
 
+const Range kFriction = between(1e-3, 2.0);
+
+/// [x, left, right] along the track as parts of the most that each rail has. @param most  out
+std::vector<double> read_friction_table(const Table& t, double* most) {
+  const char* const key = "friction_table";
+  std::vector<double> rows = t.rows(key, 3);
+  if (rows.size() > 3 * std::size_t{kMostFrictionPlaces})
+    t.refuse(key, "E-CONTACT-08",
+             fmt::format("{} has {} rows; expected at most {}", key, rows.size() / 3,
+                         kMostFrictionPlaces));
+  most[0] = most[1] = 0.;
+  for (std::size_t i = 0; i < rows.size(); i += 3) {
+    if (i > 0 && !(rows[i] > rows[i - 3]))
+      t.refuse(key, "E-CONTACT-09",
+               fmt::format("{}: x = {:.15g} follows x = {:.15g}; expected places that rise", key,
+                           rows[i], rows[i - 3]));
+    for (std::size_t side = 0; side < 2; ++side) {
+      const double own = rows[i + 1 + side];
+      if (!kFriction.holds(own))
+        t.refuse(
+            key, "E-CONTACT-10",
+            fmt::format("{}: a coefficient of {:.15g}; expected {}", key, own, kFriction.text()));
+      most[side] = std::max(most[side], own);
+    }
+  }
+  for (std::size_t i = 0; i < rows.size(); i += 3)
+    for (std::size_t side = 0; side < 2; ++side) rows[i + 1 + side] /= most[side];
+  return rows;
+}
+
+/// @param parts  RailVehicle::friction, out
+RollingFriction read_friction(const Table& t, std::vector<double>& parts) {
+  RollingFriction f{{1., 1.}};
+  if (t.has("friction_table")) {
+    if (t.has("friction"))
+      t.refuse("friction_table", "E-CONTACT-11",
+               "friction_table is given beside friction; expected one of them");
+    parts = read_friction_table(t, f.rail);
+  } else {
+    const std::array<double, 2> friction = t.number_or_pair("friction", kFriction);
+    std::copy(friction.begin(), friction.end(), f.rail);
+  }
+  if (!t.has("kinetic_part")) return f;
+  f.kinetic = t.number("kinetic_part", between(0.01, 1.0));
+  f.half = t.number("half_slip_m_per_s", between(1e-3, 1e3));
+  return f;
+}
+
 /// The law of creep. Without coefficients the patch follows from the contact.
 RollingCreep read_creep(const Table& t, const RollingContact& c, double radius,
-                        const BarScene& steel) {
-  RollingCreep creep{CreepLaw::linear, 0, {1., 1.}, {1., 1., 1., 0., {}}};
+                        const BarScene& steel, std::vector<double>& parts) {
+  RollingCreep creep{CreepLaw::linear, 0, {{1., 1.}}, {1., 1., 1., 0., {}}};
   const std::size_t law = t.choice("creep", {"none", "linear", "she", "fastsim", "polach"});
   if (law == 0) return creep;
   creep.law = CreepLaw{static_cast<std::int32_t>(law - 1)};
-  if (creep.law != CreepLaw::linear) {
-    const std::array<double, 2> friction = t.number_or_pair("friction", between(1e-3, 2.0));
-    std::copy(friction.begin(), friction.end(), creep.friction);
-  }
+  if (creep.law != CreepLaw::linear) creep.friction = read_friction(t, parts);
   if (creep.law == CreepLaw::fastsim)
     creep.strips = static_cast<std::int32_t>(t.integer("strips", 1, kMostStrips, 10));
   if (t.has("kalker")) {
@@ -130,7 +175,7 @@ void read_rolling(const Table& root, const Scene& scene, RailVehicle& vehicle) {
     vehicle.contact = profiles.contact;
     vehicle.tables = std::move(profiles.tables);
   }
-  vehicle.contact.creep = read_creep(t, vehicle.contact, radius, scene.rail);
+  vehicle.contact.creep = read_creep(t, vehicle.contact, radius, scene.rail, vehicle.friction);
   vehicle.contact.relaxation =
       t.number("relaxation_m", between(0.0, 1.0),
                relaxation_length(vehicle.contact, radius, mean_load(vehicle.runner), scene.rail));

@@ -250,8 +250,9 @@ StandingRunner standing_runner(const Model& model, const RunnerModel& runner, co
       place_over_rail(under, side, at.u + first, over);
       const OverRail place{over, under.roll[side]};
       const double radius = runner.wheelset[i].radius, sign = side == 0 ? 1. : -1.;
-      const Rolling rolling = rolling_of(runner, i, standing.speed, at.v + first,
-                                         creepage_of(at, runner.first_wheelset + i, side), 0.);
+      Rolling rolling = rolling_of(runner, i, standing.speed, at.v + first,
+                                   creepage_of(at, runner.first_wheelset + i, side), 0.);
+      rolling.grip = under.grip[side];
       wheel.force =
           force_on_wheel(runner.contact, radius, sign, rolling, place, at.v + first, rate);
       wheel.strain = strain_of(runner.contact, radius, sign, place, wheel.force);

@@ -94,10 +94,11 @@ struct RailVehicle {
   Runner runner = {};
   RollingContact contact = {};
   std::shared_ptr<const ContactTables> tables = nullptr;  // to which its profiles point
-  double start = 0., speed = 0.;                          // of its origin, m, m/s
-  bool rolls_freely = false;                              // from that speed on; has no `speeds`
-  std::vector<double> speeds = {};                        // t (s), m/s, ...; empty: `speed`
-  double gravity = kGravity;                              // m/s2
+  std::vector<double> friction = {};  // [places][3] RollingFriction::parts; empty: 1 everywhere
+  double start = 0., speed = 0.;      // of its origin, m, m/s
+  bool rolls_freely = false;          // from that speed on; has no `speeds`
+  std::vector<double> speeds = {};    // t (s), m/s, ...; empty: `speed`
+  double gravity = kGravity;          // m/s2
   std::vector<OuterForce> forces = {};
 };
 

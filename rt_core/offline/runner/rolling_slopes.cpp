@@ -7,17 +7,17 @@ namespace railstep {
 
 namespace {
 
-WheelForce on_cone(const RollingContact& c, double radius, double side, double speed,
+WheelForce on_cone(const RollingContact& c, double radius, double side, const Rolling& rolling,
                    const double* u, const double* v, WheelSlopes& slopes) {
   const WheelRows<Placed> r =
       wheel_rows(c, radius, side, Placed::along(0, u[1]), Placed::along(1, u[2]),
                  Placed::along(2, u[3]), Placed::along(3, u[5]));
   if (!(r.depth.value > 0.)) return {r.depth.value, 0., 0., {}, 0., false, {}};
-  const Slip<Placed> slip = slip_of(r, v, speed, radius, {});
+  const Slip<Placed> slip = slip_of(r, v, rolling.frame, radius, {});
   const Placed normal = normal_force(c, r.depth);
-  const ContactCreep creep = contact_creep(
-      c.creep, c.creep.patch, friction_of(c.creep, side), {r.depth.value, normal.value},
-      {slip.along.value, slip.across.value, slip.spin.value}, speed);
+  const ContactCreep creep =
+      creep_on_rail(c.creep, c.creep.patch, side, {r.depth.value, normal.value},
+                    {slip.along.value, slip.across.value, slip.spin.value}, rolling);
   Placed by_creep[3];
   for (int i = 0; i < 3; ++i) {
     const double* const by = creep.by_slip[i];
@@ -43,7 +43,7 @@ WheelForce on_cone(const RollingContact& c, double radius, double side, double s
     for (int m = 0; m < 6; ++m)
       slopes.by_rate[k][m] = by_slip[0] * along[m] + by_slip[1] * across[m] + by_slip[2] * spin[m];
   }
-  return wheel_force(c, radius, side, speed, u, v, RailRate{});
+  return wheel_force(c, radius, side, rolling, u, v, RailRate{});
 }
 
 struct Seven {
@@ -63,14 +63,14 @@ void take_difference(const WheelForce& more, const WheelForce& less, double step
   for (int k = 0; k < 7; ++k) slopes[k * columns + at] = (a.force[k] - b.force[k]) / (2. * step);
 }
 
-WheelForce on_profile(const RollingContact& c, double radius, double side, double speed,
+WheelForce on_profile(const RollingContact& c, double radius, double side, const Rolling& rolling,
                       const OverRail& at, const double* v, WheelSlopes& slopes) {
   constexpr double kPlace = 2e-6, kRate = 1e-6;  // m or rad; of the speed
   double u[6], rate[6];
   std::copy_n(at.motion, 6, u);
   std::copy_n(v, 6, rate);
   const auto placed = [&](double section) {
-    return force_on_wheel(c, radius, side, speed, {u, section}, v, RailRate{});
+    return force_on_wheel(c, radius, side, rolling, {u, section}, v, RailRate{});
   };
   for (int m = 0; m < 4; ++m) {
     double& own = u[index_of(kPlaced[m])];
@@ -87,9 +87,9 @@ WheelForce on_profile(const RollingContact& c, double radius, double side, doubl
   find_profile_wheel(c, radius, side, at, wheel);
   double stiffness[kMostZones];
   const auto moving = [&](double section) {
-    return profile_force(c, wheel, radius, side, speed, at, rate, {0., 0., section}, stiffness);
+    return profile_force(c, wheel, radius, side, rolling, at, rate, {0., 0., section}, stiffness);
   };
-  const double small = kRate * (1. + std::fabs(speed));
+  const double small = kRate * (1. + std::fabs(rolling.frame));
   for (int m = 0; m < 6; ++m) {
     rate[m] = v[m] + small;
     const WheelForce more = moving(0.);
@@ -103,11 +103,12 @@ WheelForce on_profile(const RollingContact& c, double radius, double side, doubl
 
 }  // namespace
 
-WheelForce force_on_wheel(const RollingContact& c, double radius, double side, double speed,
-                          const OverRail& at, const double* v, WheelSlopes& slopes) {
+WheelForce force_on_wheel(const RollingContact& c, double radius, double side,
+                          const Rolling& rolling, const OverRail& at, const double* v,
+                          WheelSlopes& slopes) {
   slopes = {};
-  return has_profiles(c) ? on_profile(c, radius, side, speed, at, v, slopes)
-                         : on_cone(c, radius, side, speed, at.motion, v, slopes);
+  return has_profiles(c) ? on_profile(c, radius, side, rolling, at, v, slopes)
+                         : on_cone(c, radius, side, rolling, at.motion, v, slopes);
 }
 
 }  // namespace railstep

@@ -13,7 +13,8 @@ struct WheelSlopes {
 /// profiles differences to both sides, with all that moves along the profiles.
 /// @param side  1 of the left wheel, -1 of the right
 /// @param v     [6] rates of the wheelset's motions
-WheelForce force_on_wheel(const RollingContact& c, double radius, double side, double speed,
-                          const OverRail& at, const double* v, WheelSlopes& slopes);
+WheelForce force_on_wheel(const RollingContact& c, double radius, double side,
+                          const Rolling& rolling, const OverRail& at, const double* v,
+                          WheelSlopes& slopes);
 
 }  // namespace railstep

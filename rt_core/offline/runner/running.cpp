@@ -30,8 +30,9 @@ void add_wheelset(const RollingContact& contact, double radius, double speed,
     WheelSlopes slopes;
     double over_rail[kMotions];
     place_over_rail(rails, side, u.data() + first, over_rail);
-    const WheelForce f = force_on_wheel(contact, radius, side == 0 ? 1. : -1., speed,
-                                        {over_rail, rails.roll[side]}, v.data() + first, slopes);
+    const WheelForce f =
+        force_on_wheel(contact, radius, side == 0 ? 1. : -1., {speed, rails.grip[side]},
+                       {over_rail, rails.roll[side]}, v.data() + first, slopes);
     for (int k = 0; k < kMotions; ++k) {
       sum.force[first + k] += f.generalised[k];
       for (int j = 0; j < 4; ++j)
@@ -298,7 +299,7 @@ void add_track(const Runner& runner, const RollingContact& contact, double speed
       place_over_rail(under, side, steady.displacement.data() + first_of(b), u);
       WheelSlopes slopes;
       static_cast<void>(force_on_wheel(contact, runner.bodies[b].radius, side == 0 ? 1. : -1.,
-                                       speed, {u, under.roll[side]},
+                                       {speed, under.grip[side]}, {u, under.roll[side]},
                                        steady.rate.data() + first_of(b), slopes));
       add_seat(slopes, first_of(b), seat, linear);
       seat += 3;
@@ -341,9 +342,9 @@ std::vector<std::array<WheelForce, 2>> wheel_forces(const Runner& runner,
     if (!runner.bodies[b].is_wheelset()) continue;
     const RailsUnder under = rails.empty() ? RailsUnder{} : rails[all.size()];
     std::array<WheelForce, 2> wheels;
-    Rolling rolling(speed);
-    rolling.keeps = true;
     for (const int side : {0, 1}) {
+      Rolling rolling(speed, under.grip[side]);
+      rolling.keeps = true;
       double u[kMotions];
       place_over_rail(under, side, steady.displacement.data() + first_of(b), u);
       wheels[static_cast<std::size_t>(side)] =

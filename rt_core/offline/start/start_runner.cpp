@@ -104,12 +104,17 @@ SettledRunners runners_on_even_rails(const PackedModel& packed) {
   SettledRunners settled;
   const Model& model = packed.model();
   for (std::int32_t r = 0; r < model.runners; ++r) {
+    const RunnerModel& runner = model.runner[r];
     const PackedRunner& own = packed.runners()[static_cast<std::size_t>(r)];
-    const double speed = first_speed(model.runner[r]);
+    std::vector<RailsUnder> rails(static_cast<std::size_t>(runner.wheelsets));
+    for (int i = 0; i < runner.wheelsets; ++i)
+      std::copy_n(rails_under(model, runner, i, place_at(runner, 0.)).grip, 2,
+                  rails[static_cast<std::size_t>(i)].grip);
+    const double speed = first_speed(runner);
     settled.steady.push_back(
-        steady_running(own.vehicle.runner, own.matrices, own.vehicle.contact, speed));
+        steady_running(own.vehicle.runner, own.matrices, own.vehicle.contact, speed, rails));
     for (const auto& wheels :
-         wheel_forces(own.vehicle.runner, own.vehicle.contact, speed, settled.steady.back()))
+         wheel_forces(own.vehicle.runner, own.vehicle.contact, speed, settled.steady.back(), rails))
       settled.wheels.push_back(wheels);
   }
   return settled;
@@ -170,6 +175,7 @@ SettledRunners settle_runners(const PackedModel& packed, const SettledRunners& p
       RailsUnder& under = rails.emplace_back(RailsUnder{});
       for (int side = 0; side < 2; ++side) {
         under.z[side] = uneven.z[side];
+        under.grip[side] = uneven.grip[side];
         // Alignment is followed; the gauge is not.
         under.y[side] = uneven.y[side] - .5 * (uneven.y[0] + uneven.y[1]);
         const StaticSeat seat = seat_of(model, runner, i, side, at, time);

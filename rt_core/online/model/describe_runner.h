@@ -70,10 +70,13 @@ void describe(Archive& a, RollingContact& c) {
   creep.law = static_cast<CreepLaw>(law);
   a.count(creep.strips, kMostStrips);
   RollingPatch& patch = creep.patch;
-  for (double* x :
-       {&creep.friction[0], &creep.friction[1], &patch.half_length, &patch.half_width, &patch.shear,
-        &patch.growth, &patch.kalker.c11, &patch.kalker.c22, &patch.kalker.c23, &patch.kalker.c33})
+  RollingFriction& friction = creep.friction;
+  for (double* x : {&friction.rail[0], &friction.rail[1], &friction.kinetic, &friction.half,
+                    &patch.half_length, &patch.half_width, &patch.shear, &patch.growth,
+                    &patch.kalker.c11, &patch.kalker.c22, &patch.kalker.c23, &patch.kalker.c33})
     a.real(*x);
+  a.count(friction.places, kMostFrictionPlaces);
+  a.reals(friction.parts, 3 * std::int64_t{friction.places});
   describe(a, c.profiles);
 }
 

@@ -142,10 +142,18 @@ bool vehicle_is_valid(const Model& m, const SuspendedModel& v) noexcept {
          diagonal_is_above_zero(v.inverse, v.size);
 }
 
+bool friction_is_valid(const RollingFriction& f) noexcept {
+  for (std::int32_t i = 0; i < f.places; ++i) {
+    const double* const row = f.parts + std::ptrdiff_t{3} * i;
+    if (!are_above_zero(row + 1, 2) || (i > 0 && !(row[0] > row[-3]))) return false;
+  }
+  return are_above_zero(f.rail, 2) && f.kinetic > 0. && f.kinetic <= 1. && f.half > 0.;
+}
+
 bool creep_is_valid(const RollingCreep& c) noexcept {
   const RollingPatch& p = c.patch;
   const double coefficients[] = {p.kalker.c11, p.kalker.c22, p.kalker.c23, p.kalker.c33, p.growth};
-  return are_not_negative(coefficients, 5) && are_above_zero(c.friction, 2) && p.half_length > 0. &&
+  return are_not_negative(coefficients, 5) && friction_is_valid(c.friction) && p.half_length > 0. &&
          p.half_width > 0. && p.shear > 0. && (c.law != CreepLaw::fastsim || c.strips > 0);
 }
 

@@ -25,12 +25,24 @@ struct RollingPatch {
   Kalker kalker;
 };
 
+/// Coulomb friction between wheels and rails. Over the slip of the wheel its coefficient falls from
+/// that of a wheel that rolls to the part `kinetic` of it, half of the way at the slip `half`.
+struct RollingFriction {
+  double rail[2];                 // of the left and of the right rail where they have most of it
+  double kinetic = 1.;            // above 0; 1: it does not depend on the slip
+  double half = 1.;               // m/s
+  std::int32_t places = 0;        // 0: the same everywhere
+  const double* parts = nullptr;  // [places][3] x along the track, m, and the parts of `rail` there
+};
+inline constexpr int kMostFrictionPlaces = 10'000;
+inline bool falls(const RollingFriction& f) noexcept { return f.kinetic < 1.; }
+
 /// Creep of wheels on rails.
 struct RollingCreep {
   CreepLaw law;
   std::int32_t strips;  // of FASTSIM
-  double friction[2];   // coefficients of the left and of the right rail
-  RollingPatch patch;   // of profiles: only if its size is given
+  RollingFriction friction;
+  RollingPatch patch;  // of profiles: only if its size is given
 };
 
 /// Profiles of both wheels of a wheelset and of both rails, alike.

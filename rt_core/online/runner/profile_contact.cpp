@@ -195,8 +195,7 @@ WheelForce profile_force(const RollingContact& c, const ProfileWheel& wheel, dou
     if (grown.growth > 0. && force.normal > 0.)
       grown.growth = .5 * force.normal / (force.stiffness * beyond);
     const ContactCreep creep =
-        contact_creep(c.creep, grown, friction_of(c.creep, side), {beyond, force.normal},
-                      with_creep_before(slip, rolling), rolling.over);
+        creep_on_rail(c.creep, grown, side, {beyond, force.normal}, slip, rolling);
     stiffness[i] = share * force.stiffness;
     if (slopes != nullptr) {
       find_slopes(rows, patch.across_turned, force.stiffness, spin, creep, slopes[i]);

@@ -69,8 +69,7 @@ WheelForce wheel_force(const RollingContact& c, double radius, double side, cons
   const Slip<double> slips{slip.along.value, slip.across.value, slip.spin.value};
   const Placed normal = normal_force(c, placed.depth);
   const ContactCreep creep =
-      contact_creep(c.creep, c.creep.patch, friction_of(c.creep, side), {r.depth, normal.value},
-                    with_creep_before(slips, rolling), rolling.over);
+      creep_on_rail(c.creep, c.creep.patch, side, {r.depth, normal.value}, slips, rolling);
   find_slopes(r, slip, normal, creep, slopes);
   return wheel_force(r, normal.value, slips, rolling, creep);
 }

@@ -199,11 +199,6 @@ T normal_force(const RollingContact& c, const T& depth) noexcept {
   return c.hertz * depth * sqrt(depth);
 }
 
-/// Friction of a rail by its side.
-inline double friction_of(const RollingCreep& creep, double side) noexcept {
-  return creep.friction[side > 0. ? 0 : 1];
-}
-
 /// Over the six motions of the wheelset, N and N m.
 template <typename T>
 void generalise(const WheelRows<T>& r, const ContactForces<T>& f, T* force) noexcept {
@@ -217,10 +212,10 @@ void generalise(const WheelRows<T>& r, const ContactForces<T>& f, T* force) noex
       f.normal * r.normal_yaw + f.along * r.along_yaw + f.across * r.across_yaw + f.moment * r.n_z;
 }
 
-/// Deviation of both railheads from straight, level lines under a wheelset, m, and roll of their
-/// sections, rad: [left, right].
+/// Deviation of both railheads from straight, level lines under a wheelset, m, roll of their
+/// sections, rad, and the part of their friction: [left, right].
 struct RailsUnder {
-  double y[2], z[2], roll[2];
+  double y[2] = {}, z[2] = {}, roll[2] = {}, grip[2] = {1., 1.};
 };
 /// The motions of a wheelset over one of its rails. @param over  [6] out
 inline void place_over_rail(const RailsUnder& rails, int side, const double* u,
@@ -289,10 +284,8 @@ inline WheelForce wheel_force(const RollingContact& c, double radius, double sid
   if (!(r.depth > 0.)) return {r.depth, 0., 0., {}, 0., false, {}};
   const Slip<double> slip = slip_of(r, v, rolling.frame, radius, rail);
   const double normal = normal_force(c, r.depth);
-  return wheel_force(
-      r, normal, slip, rolling,
-      contact_creep(c.creep, c.creep.patch, friction_of(c.creep, side), {r.depth, normal},
-                    with_creep_before(slip, rolling), rolling.over));
+  return wheel_force(r, normal, slip, rolling,
+                     creep_on_rail(c.creep, c.creep.patch, side, {r.depth, normal}, slip, rolling));
 }
 
 /// The same with derivatives.

@@ -1,6 +1,9 @@
 #include "online/runner/rolling_creep.h"
 
+#include <cstddef>
+
 #include "online/math/scalar.h"
+#include "online/math/search.h"
 #include "online/patch/creep.h"
 
 namespace railstep {
@@ -106,6 +109,40 @@ ContactCreep creep_by_law(const RollingCreep& c, const RollingPatch& of, double 
     for (double& slope : found.by_slip[i]) slope *= per_speed;
   if (backwards) mirror(found);
   return found;
+}
+
+void grip_at(const RollingFriction& f, double x, double* part) noexcept {
+  part[0] = part[1] = 1.;
+  if (f.places == 0) return;
+  const std::int32_t at = row_at(f.parts, 3, f.places, x);
+  const double* const row = f.parts + std::ptrdiff_t{3} * at;
+  const bool beyond = x <= row[0] || at == f.places - 1;
+  const double* const next = beyond ? row : row + 3;
+  const double along = beyond ? 0. : (x - row[0]) / (next[0] - row[0]);
+  for (int side = 0; side < 2; ++side)
+    part[side] = row[1 + side] + along * (next[1 + side] - row[1 + side]);
+}
+
+double left_by_slip(const RollingFriction& f, const Slip<double>& slip) noexcept {
+  const double size = std::sqrt(slip.along * slip.along + slip.across * slip.across);
+  return f.kinetic + (1. - f.kinetic) * f.half / (f.half + size);
+}
+
+void add_fall(const RollingFriction& f, double part, const Slip<double>& slip,
+              const Slip<double>& over_rail, ContactCreep& creep) noexcept {
+  const double size =
+      std::sqrt(over_rail.along * over_rail.along + over_rail.across * over_rail.across);
+  if (!(size > 0.)) return;
+  const double slower = f.half + size,
+               by_size = -(1. - f.kinetic) * f.half / (slower * slower) / (size * part);
+  for (int k = 0; k < 3; ++k) {
+    double* const own = creep.by_slip[k];
+    // The derivative over friction, times the friction.
+    const double by_friction =
+        creep.force[k] - ((own[0] * slip.along + own[1] * slip.across) + own[2] * slip.spin);
+    own[0] += by_friction * by_size * over_rail.along;
+    own[1] += by_friction * by_size * over_rail.across;
+  }
 }
 
 }  // namespace railstep

@@ -19,9 +19,11 @@ struct Rolling {
   /// standstill creep is a spring.
   double left[3];
   bool keeps;
+  double grip;  // part of the rail's friction that is at the place
   /// A wheelset that goes along with its frame.
-  Rolling(double speed = 0.) noexcept  // NOLINT(google-explicit-constructor)
-      : frame(speed), over(speed), left{}, keeps(false) {}
+  Rolling(double speed = 0.,
+          double of_friction = 1.) noexcept  // NOLINT(google-explicit-constructor)
+      : frame(speed), over(speed), left{}, keeps(false), grip(of_friction) {}
 };
 
 /// Creep of a contact: forces on the wheel along and across, N, and the moment about the normal,
@@ -80,6 +82,35 @@ inline ContactCreep contact_creep(const RollingCreep& c, const RollingPatch& pat
 inline Slip<double> with_creep_before(const Slip<double>& slip, const Rolling& rolling) noexcept {
   const double* const left = rolling.left;
   return {slip.along + left[0], slip.across + left[1], slip.spin + left[2]};
+}
+
+/// The parts of a rail's friction at a place along the track, m. @param part  [left, right] out
+void grip_at(const RollingFriction& f, double x, double* part) noexcept;
+
+/// Friction that falls over the slip: adds what the slip does by it to the derivatives. As the
+/// limit alone has friction in it, a force is homogeneous in slip and friction.
+/// @param part  by which it has fallen
+/// @param slip  with_creep_before(); @param over_rail  without
+void add_fall(const RollingFriction& f, double part, const Slip<double>& slip,
+              const Slip<double>& over_rail, ContactCreep& creep) noexcept;
+
+/// Part of friction that a slip leaves.
+double left_by_slip(const RollingFriction& f, const Slip<double>& slip) noexcept;
+
+/// Creep of a contact in touch.
+/// @param side  1 of the left rail, -1 of the right
+/// @param slip  of the wheel over the rail
+inline ContactCreep creep_on_rail(const RollingCreep& c, const RollingPatch& patch, double side,
+                                  const Pressed& pressed, const Slip<double>& slip,
+                                  const Rolling& rolling) noexcept {
+  const RollingFriction& f = c.friction;
+  const double most = rolling.grip * f.rail[side > 0. ? 0 : 1];
+  const Slip<double> all = with_creep_before(slip, rolling);
+  if (!falls(f)) return contact_creep(c, patch, most, pressed, all, rolling.over);
+  const double part = left_by_slip(f, slip);
+  ContactCreep creep = contact_creep(c, patch, part * most, pressed, all, rolling.over);
+  add_fall(f, part, all, slip, creep);
+  return creep;
 }
 
 }  // namespace railstep

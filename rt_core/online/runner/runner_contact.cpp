@@ -132,11 +132,13 @@ Rolling rolling_of(const RunnerModel& runner, int wheelset, double frame, const 
 
 RailsUnder rails_under(const Model& model, const RunnerModel& runner, int wheelset,
                        const AlongTrack& at, RailsUnder* slopes) noexcept {
-  RailsUnder rails{};
+  RailsUnder rails;
   if (slopes != nullptr) *slopes = {};
-  if (model.signals == 0) return rails;
+  const RollingFriction& friction = runner.contact.creep.friction;
+  if (model.signals == 0 && friction.places == 0) return rails;
   const double x = element_place(model, runner, wheelset, at) +
                    (model.lines > 0 ? track_offset(model, at.step) : 0.);
+  grip_at(friction, x, rails.grip);
   for (std::int32_t i = 0; i < model.signals; ++i) {
     const RailSignal& own = model.signal[i];
     const SignalValue found = signal_at(own.signal, x);

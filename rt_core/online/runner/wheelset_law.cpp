@@ -201,6 +201,7 @@ WheelsetLaw law_of(const RunnerStage& at, int wheelset, bool seated, const State
     law.rolling[side] =
         rolling_of(runner, wheelset, frame, v,
                    creepage_of(s, runner.first_wheelset + wheelset, side), at.stage.span);
+    law.rolling[side].grip = law.rails.grip[side];
     law.rails.y[side] -= law.later * (law.ahead * slope.y[side]);
     law.uneven_rate[side] = law.ahead * slope.z[side];
   }

@@ -19,7 +19,7 @@ constexpr int y = 1, z = 2, roll = 3, yaw = 5;
 struct Pair {
   RollingProfiles profiles = rolling_profiles(s1002_on_60e1(), {}, .3, 55e3);
   RollingContact contact = profiles.contact;
-  explicit Pair(CreepLaw law) { contact.creep = {law, 10, {.3, .3}, {1., 1., 80.8e9, 1., {}}}; }
+  explicit Pair(CreepLaw law) { contact.creep = {law, 10, {{.3, .3}}, {1., 1., 80.8e9, 1., {}}}; }
 };
 
 /// Places of a wheelset with a wheel on its rail, from the tread to the flange, and rates.

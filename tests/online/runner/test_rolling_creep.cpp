@@ -15,19 +15,19 @@ constexpr double kSpeed = 40.;              // m/s
 constexpr double kFriction[2] = {.3, .15};  // left, right
 
 /// A patch of 50 kN that grows with the force, or one that keeps its size.
-RollingCreep creep_by(CreepLaw law, bool grows) {
+RollingCreep creep_by(CreepLaw law, bool grows, double kinetic = 1.) {
   const double root = std::sqrt(std::pow(5e4 / kHertz, 2. / 3.));
   const double part = grows ? root : 1.;
   return {law,
           10,
-          {kFriction[0], kFriction[1]},
+          {{kFriction[0], kFriction[1]}, kinetic, .05},
           {5.9e-3 / part, 4.4e-3 / part, 80.8e9, grows ? 1. / 3. : 0., kalker(1.34, .3)}};
 }
 
 double normal_at(double depth) { return kHertz * depth * std::sqrt(depth); }
 
 ContactCreep creep_at(const RollingCreep& c, double depth, const Slip<double>& slip) {
-  return contact_creep(c, c.patch, kFriction[0], {depth, normal_at(depth)}, slip, kSpeed);
+  return creep_on_rail(c, c.patch, 1., {depth, normal_at(depth)}, slip, kSpeed);
 }
 
 struct Drawn {
@@ -47,14 +47,15 @@ Drawn drawn(std::mt19937_64& random, double most_slip) {
 
 TEST_CASE("derivatives of a contact's creep are those of its forces", "[rolling_creep]") {
   for (const CreepLaw law : {CreepLaw::linear, CreepLaw::she, CreepLaw::fastsim, CreepLaw::polach})
-    for (const bool grows : {false, true}) {
-      const RollingCreep c = creep_by(law, grows);
+    for (const auto& [grows, kinetic] : {std::pair{false, 1.}, {true, 1.}, {true, .4}}) {
+      const RollingCreep c = creep_by(law, grows, kinetic);
       std::mt19937_64 random(11);
       for (int n = 0; n < 200; ++n) {
         const Drawn own = drawn(random, .3);
         const double depth = own.depth;
         const Slip<double> slip = own.slip;
-        INFO("law " << static_cast<int>(law) << ", grows " << grows << ", case " << n);
+        INFO("law " << static_cast<int>(law) << ", grows " << grows << ", kinetic " << kinetic
+                    << ", case " << n);
         const ContactCreep at = creep_at(c, depth, slip);
         const double largest = std::max({std::fabs(at.force[0]), std::fabs(at.force[1]), 1.});
         for (int k = 0; k < 4; ++k) {
@@ -110,11 +111,39 @@ TEST_CASE("the limit of creep is friction times normal force", "[rolling_creep]"
   const double depth = std::pow(5e4 / kHertz, 2. / 3.);
   for (const int side : {0, 1}) {
     const ContactCreep at =
-        contact_creep(c, c.patch, kFriction[side], {depth, 5e4}, {10., 0., 0.}, kSpeed);
+        creep_on_rail(c, c.patch, side == 0 ? 1. : -1., {depth, 5e4}, {10., 0., 0.}, kSpeed);
     CHECK(at.slides());
     CHECK(at.force[0] == Approx(-kFriction[side] * 5e4).epsilon(1e-12));
   }
   CHECK(contact_creep(c, c.patch, .3, {1e-30, 0.}, {1., 0., 0.}, kSpeed).force[0] == 0.);
+  // A fifth of it is there, of which 0.4 + 0.6 / 2 is left at the slip of 0.05 m/s.
+  const RollingCreep falling = creep_by(CreepLaw::she, true, .4);
+  const ContactCreep at =
+      creep_on_rail(falling, falling.patch, 1., {depth, 5e4}, {.04, -.03, 0.}, Rolling(1., .2));
+  CHECK(std::hypot(at.force[0], at.force[1]) ==
+        Approx(.7 * .2 * kFriction[0] * 5e4).epsilon(1e-12));
+  CHECK(at.by_slip[0][0] * .8 - at.by_slip[0][1] * .6 > 0.);
+}
+
+TEST_CASE("friction over the place is linear between places", "[rolling_creep]") {
+  const double parts[] = {10., 1., .5, 12., .5, 1., 20., .25, 1.};
+  const RollingFriction f{{.3, .3}, 1., 1., 3, parts};
+  struct Known {
+    double x, left, right;
+  };
+  for (const Known& known : {Known{-1e6, 1., .5},
+                             {10., 1., .5},
+                             {11., .75, .75},
+                             {12., .5, 1.},
+                             {16., .375, 1.},
+                             {20., .25, 1.},
+                             {1e9, .25, 1.}}) {
+    double part[2];
+    grip_at(f, known.x, part);
+    INFO(known.x << " m");
+    CHECK(part[0] == Approx(known.left));
+    CHECK(part[1] == Approx(known.right));
+  }
 }
 
 TEST_CASE("the moment of a contact is bounded where linear creep has no force", "[rolling_creep]") {
