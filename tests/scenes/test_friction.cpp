@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "offline/energy/energy_account.h"
+#include "support/artefact.h"
 #include "support/bad_input.h"
 #include "support/scene_run.h"
 #include "support/shipped.h"
@@ -101,9 +102,9 @@ TEST_CASE("friction that is the same everywhere is that of its coefficient", "[f
     };
     const std::vector<double> known = run("friction=[0.05,0.06]");
     CHECK(run("friction_table=[[0.0,0.05,0.06]]") == known);
-    // Half of a coefficient that is far away.
+    // Half of the left rail's coefficient that is far away.
     const std::vector<double> half =
-        run("friction_table=[[0.0,0.05,0.06],[1e6,0.05,0.06],[1e7,0.1,0.12]]");
+        run("friction_table=[[0.0,0.05,0.06],[1e6,0.05,0.06],[1e7,0.1,0.06]]");
     REQUIRE(half.size() == known.size());
     double most = 0.;
     for (std::size_t i = 0; i < known.size(); ++i)
@@ -111,6 +112,48 @@ TEST_CASE("friction that is the same everywhere is that of its coefficient", "[f
     INFO(name);
     CHECK(most < 1e-9);
   }
+}
+
+TEST_CASE("each wheelset meets the friction of its own place", "[friction]") {
+  // The first of four wheelsets is 10.78 m ahead of the middle, and meets the change 5 m further
+  // on.
+  const auto run = [](const char* after) {
+    return Traced(read_scene(
+        shipped("manchester_ring"),
+        {"contact.creep=\"she\"", "step.duration_s=0.2", "vehicle[0].speed_m_per_s=50.0",
+         "vehicle[0].start_m=11.4",
+         std::string("contact.friction_table=[[27.18,0.05,0.06],[27.1801,") + after + "]]"}));
+  };
+  const Traced even = run("0.05,0.06"), left = run("0.04,0.06"), right = run("0.05,0.07");
+  for (const Traced* changed : {&left, &right}) {
+    // A change of the left rail's friction is the first one of the left wheel.
+    const char* const side = changed == &left ? "left" : "right";
+    const std::string column = std::string("car.leading_1_") + side + ".y_n";
+    const std::vector<double> known = even[column], found = (*changed)[column],
+                              time = even["time_s"];
+    std::size_t first = 0;
+    while (first < known.size() && std::fabs(found[first] - known[first]) < 1e-6) ++first;
+    INFO(side);
+    REQUIRE(first < known.size());
+    CHECK(time[first] == Approx(5. / 50.).margin(2e-3));
+  }
+}
+
+TEST_CASE("a model that has places of friction without their table is refused", "[friction]") {
+  const auto block_with = [](const char* friction) {
+    return Simulation(read_scene(shipped("manchester_straight"),
+                                 {"contact.creep=\"she\"", std::string("contact.") + friction}))
+        .block();
+  };
+  // The count of places is the first word that is 0 in one of them and 1 in the other.
+  const Block one = block_with("friction_table=[[0.0,0.3,0.3]]");
+  Block none = block_with("friction=0.3");
+  std::size_t places = section_at(none, kWords);
+  while (word_of(none, places) != 0 || word_of(one, places) != 1) places += 8;
+  REQUIRE(status_of(none) == LoadStatus::ok);
+  put_word(none, places, 3);
+  sign(none);
+  CHECK(status_of(none) != LoadStatus::ok);
 }
 
 TEST_CASE("friction that cannot be used is refused", "[friction][bad_input]") {
@@ -125,6 +168,7 @@ TEST_CASE("friction that cannot be used is refused", "[friction][bad_input]") {
           {"[contact]", "x = 0.5", "E-CONTACT-09"});
   refused({"friction_table=[[1.0,0.3,0.0]]"}, {"[contact]", "coefficient of 0", "E-CONTACT-10"});
   refused({"friction=0.3", "kinetic_part=0.5"}, {"[contact]", "half_slip_m_per_s", "E-KEY-01"});
+  refused({"friction=0.3", "half_slip_m_per_s=1.0"}, {"half_slip_m_per_s", "E-CONTACT-12"});
   refused({"friction=0.3", "kinetic_part=1.5", "half_slip_m_per_s=1.0"},
           {"kinetic_part", "E-KEY-05"});
   refused({"friction=0.3", "kinetic_part=0.1", "half_slip_m_per_s=0.001"},

@@ -70,7 +70,12 @@ RollingFriction read_friction(const Table& t, std::vector<double>& parts) {
     const std::array<double, 2> friction = t.number_or_pair("friction", kFriction);
     std::copy(friction.begin(), friction.end(), f.rail);
   }
-  if (!t.has("kinetic_part")) return f;
+  if (!t.has("kinetic_part")) {
+    if (t.has("half_slip_m_per_s"))
+      t.refuse("half_slip_m_per_s", "E-CONTACT-12",
+               "half_slip_m_per_s is given without kinetic_part; expected both, or none");
+    return f;
+  }
   f.kinetic = t.number("kinetic_part", between(0.01, 1.0));
   f.half = t.number("half_slip_m_per_s", between(1e-3, 1e3));
   return f;

@@ -17,9 +17,11 @@ constexpr Cost kFind = branching(56000, 28000), kPatches = branching(17000, 9500
 Cost creep_cost(const RollingCreep& creep) {
   const std::int64_t strips = creep.strips;
   if (creep.law == CreepLaw::linear) return {};
-  return creep.law == CreepLaw::fastsim
-             ? branching(150 * strips * strips + 60 * strips + 700, 40 * strips * strips + 400)
-             : branching(800, 400);
+  const Cost fall = falls(creep.friction) ? branching(120, 60) : Cost{};
+  return fall +
+         (creep.law == CreepLaw::fastsim
+              ? branching(150 * strips * strips + 60 * strips + 700, 40 * strips * strips + 400)
+              : branching(800, 400));
 }
 
 /// All wheels of some runners: where they touch, their forces alone and with their slopes; the
@@ -79,7 +81,9 @@ Cost runners_cost(const Model& model) {
   Cost sum{};
   for (std::int32_t i = 0; i < model.runners; ++i) {
     const RunnerModel& own = model.runner[i];
-    const std::int64_t n = own.size, meets = interface_size(own);
+    const std::int64_t n = own.size, meets = interface_size(own),
+                       places = own.contact.creep.friction.places;
+    const Cost grip = places > 0 ? 2 * table_cost(places) : Cost{};
     WheelsCost wheels;
     add_wheels(own, kMotions, wheels);
     const Cost solved = model.lines > 0 ? Cost{} : newton_cost(wheels, own.stops, meets);
@@ -91,7 +95,7 @@ Cost runners_cost(const Model& model) {
           work(held * (2 * n + 2 * motions + (2 * n + 2) * own.stops),
                held * (2 * n + motions + 2 * n * own.stops)) +
           solved + 3 * table_cost(own.travel.rows) + forces_cost(own.force, own.forces) +
-          own.wheelsets * (branching(40, 40) + model.signals * kSignal) + brakes_cost(own);
+          own.wheelsets * (branching(40, 40) + model.signals * kSignal + grip) + brakes_cost(own);
   }
   return sum;
 }

@@ -221,6 +221,7 @@ PackedModel::PackedModel(const Track& track, const Traffic& traffic, const PackO
   if (options.residual_flexibility && !track.rigid)
     add_residual(track, traffic.track_sensors, options.residual_points);
   add_p_delta(track);
+  refuse_steep_friction(track);
   std::vector<double> start = start_released(*this);
   put_falling(model_, traffic.vehicles, start);
   set_start(std::move(start));

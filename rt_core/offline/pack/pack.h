@@ -289,6 +289,10 @@ class PackedModel {
   void add_vehicle(const Track& track, const RunningVehicle& vehicle,
                    const std::array<Railhead, 2>& heads);
   void add_runner(const Track& track, const RailVehicle& vehicle);
+  /// Friction that falls over slip is a damper of negative rate. A step has one solution as long as
+  /// what contacts slip by a force of their own is below what the force falls by the slip. From
+  /// half of the way on under twice the mean wheel load it is refused.
+  void refuse_steep_friction(const Track& track) const;
   /// Takes the tables that a pair points to into the model's own memory.
   void keep_profiles(ProfilePair& pair);
   /// @param body  "wheelset" or "vehicle", for messages

@@ -124,7 +124,8 @@ void PackedModel::clip(int points, std::vector<double>& under) {
   const std::size_t places = under.size() / load_points_.size();
   for (std::int32_t wheel = 0; wheel < wheel_count(model_); ++wheel) {
     const auto point = static_cast<std::size_t>(model_.contact[wheel].load_point);
-    const std::vector<double> lines = compliance.table(load_points_[point], points);
+    const std::vector<double> lines =
+        compliance.table(load_points_[point], points, model_.residual.elements);
     for (std::size_t i = 0; i < places; ++i) {
       double& value = under[point * places + i];
       const double lowest = lines[i] > 0. ? -.5 * lines[i] : -1.5 * lines[i];

@@ -115,36 +115,6 @@ void add_wheelsets(const Runner& runner, Model& model, RunnerModel& packed) {
   }
 }
 
-/// Friction that falls over slip is a damper of negative rate. A step has one solution as long as
-/// what a contact slips by its own force stays below what the force changes by the slip. The rails
-/// give way too, so that half of the way to it under twice the weight is refused.
-/// @param compliance  of the motions of wheelsets
-/// @param rate  of a motion over a change of the motion in a step, 1/s
-void refuse_steep_friction(const RailVehicle& vehicle, const RunnerModel& packed,
-                           const Eigen::MatrixXd& compliance, double rate) {
-  const RollingFriction& f = vehicle.contact.creep.friction;
-  if (!falls(f)) return;
-  double mass = 0., slips = 0.;
-  for (const RunnerBody& body : vehicle.runner.bodies) mass += body.mass;
-  const double load = mass * vehicle.gravity / (2. * packed.wheelsets);
-  for (std::int32_t i = 0; i < packed.wheelsets; ++i) {
-    const Eigen::MatrixXd own = compliance.block<kMotions, kMotions>(kMotions * i, kMotions * i);
-    const double radius = packed.wheelset[i].radius;
-    Eigen::Matrix<double, kMotions, 2> rows;  // along and across
-    rows << 1., 0., 0., 1., 0., 0., 0., radius, -radius, 0., -vehicle.contact.half_distance, 0.;
-    slips = std::max(slips, rate * (rows.transpose() * own * rows).diagonal().maxCoeff());
-  }
-  const double falling = 2. * load * std::max(f.rail[0], f.rail[1]) * (1. - f.kinetic) / f.half;
-  if (slips * falling <= .5) return;
-  const auto whole = [](double value) { return std::to_string(std::lround(value)); };
-  refuse(
-      "E-PACK-60",
-      "friction falls over slip by " + whole(falling) +
-          " N s/m under twice the mean wheel load; expected at most " + whole(.5 / slips) +
-          " N s/m, half of what a wheelset's inertia holds in a step: a shorter step, or a larger "
-          "half_slip_m_per_s or kinetic_part");
-}
-
 }  // namespace
 
 RunnerMatrices loaded_matrices(const RailVehicle& vehicle) {
@@ -202,10 +172,6 @@ void PackedModel::add_runner(const Track& track, const RailVehicle& vehicle) {
   const Eigen::MatrixXd stops = stop_rows(matrices, n);
   const Eigen::MatrixXd compliance =
       model_.scheme.theta * interface_compliance(packed, step.inverse, stops);
-  refuse_steep_friction(vehicle, packed, compliance,
-                        model_.form == Form::condensed
-                            ? 1. / (model_.scheme.theta * model_.scheme.dt)
-                            : model_.scheme.kv);
   packed.stop_row = keep(column_by_column(stops));
   packed.stop_moved = keep(column_by_column(step.inverse * stops));
   packed.rod_row = keep(column_by_column(m.held.rightCols(packed.rods)));

@@ -63,7 +63,8 @@ StepCompliance::StepCompliance(const Model& model, const std::vector<PackedLine>
       inverse_.emplace_back(own.line.stiffness + s.kv * own.line.damping + s.kg * own.line.mass);
 }
 
-std::vector<double> StepCompliance::table(const LoadPoint& load_point, int points) const {
+std::vector<double> StepCompliance::table(const LoadPoint& load_point, int points,
+                                          std::int32_t elements) const {
   const auto n = static_cast<std::size_t>(model_.unknowns);
   std::vector<double> re(n), im(n), table;
   // The tables cover one bay: the one in which the traffic on a ring stands.
@@ -72,7 +73,7 @@ std::vector<double> StepCompliance::table(const LoadPoint& load_point, int point
       model_.form == Form::condensed && e.bays > 0
           ? static_cast<std::int32_t>(std::lround(e.origin / e.bay_length)) * e.bay_elements
           : 0;
-  for (std::int32_t element = first; element < first + model_.residual.elements; ++element)
+  for (std::int32_t element = first; element < first + elements; ++element)
     for (int p = 0; p <= points; ++p) {
       const RailRow row = row_of(model_, load_point, element, 2. * p / points - 1.);
       double sum = 0.;

@@ -11,8 +11,9 @@ namespace railstep {
 class StepCompliance {
  public:
   StepCompliance(const Model& model, const std::vector<PackedLine>& lines);
-  /// At the places of the model's tables over elements, m/N; [elements][points + 1].
-  std::vector<double> table(const LoadPoint& load_point, int points) const;
+  /// At places along the first elements, on a ring those in which the traffic stands, m/N;
+  /// [elements][points + 1].
+  std::vector<double> table(const LoadPoint& load_point, int points, std::int32_t elements) const;
 
  private:
   const Model& model_;

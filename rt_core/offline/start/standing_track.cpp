@@ -172,7 +172,6 @@ std::vector<RailsUnder> places_of(const Model& model, const RunnerModel& runner,
   std::vector<RailsUnder> places(static_cast<std::size_t>(runner.wheelsets));
   for (int wheel = 0; wheel < wheels; ++wheel) {
     RailsUnder& under = places[static_cast<std::size_t>(wheel / 2)];
-    under.grip[wheel % 2] = rails_under(model, runner, wheel / 2, {0, 0.}).grip[wheel % 2];
     const double* const force = wheel_force_of(start, runner.first_wheelset + wheel / 2, wheel % 2);
     const SeatFlexibility gives = seat_flexibility_beside(
         model, runner, wheel % 2, seats.place[static_cast<std::size_t>(wheel)]);

@@ -143,6 +143,7 @@ bool vehicle_is_valid(const Model& m, const SuspendedModel& v) noexcept {
 }
 
 bool friction_is_valid(const RollingFriction& f) noexcept {
+  if (f.places > 0 && f.parts == nullptr) return false;
   for (std::int32_t i = 0; i < f.places; ++i) {
     const double* const row = f.parts + std::ptrdiff_t{3} * i;
     if (!are_above_zero(row + 1, 2) || (i > 0 && !(row[0] > row[-3]))) return false;

@@ -98,14 +98,20 @@ PatchForce patch_force(const StripPatch& patch, double approach) noexcept {
 
 PatchHold hold_of(const StripPatch& patch, double approach) noexcept {
   const double level = kVirtualPart * approach;
+  const double* const gap = patch.gap;
+  double weight[kMostPatchStrips];
+#pragma omp simd
+  for (int i = 0; i < patch.strips; ++i) {
+    const double deep = level - gap[i] > 0. ? level - gap[i] : 0.;
+    weight[i] = deep * square_root(deep);
+  }
   double sum = 0., moment = 0., squares = 0., gaps = 0.;
   for (int i = 0; i < patch.strips; ++i) {
-    const double deep = level - patch.gap[i] > 0. ? level - patch.gap[i] : 0.;
-    const double weight = deep * square_root(deep), number = i - patch.deepest;
-    sum += weight;
-    moment += weight * number;
-    squares += weight * (number * number);
-    gaps += weight * patch.gap[i];
+    const double number = i - patch.deepest;
+    sum += weight[i];
+    moment += weight[i] * number;
+    squares += weight[i] * (number * number);
+    gaps += weight[i] * gap[i];
   }
   if (!(sum > 0.)) return {patch.deepest, patch.deepest, 0.};
   const double mean = moment / sum, spread = squares / sum - mean * mean;

@@ -12,38 +12,24 @@ constexpr double kAllowance = 1.3;  // of a depth, to which a step may press a z
 constexpr double kLeastHold = .1;   // of the least depth: some strips overlap
 constexpr int kMostMinima = 8;
 constexpr int kFineStrips = 17;  // over the strips to both sides of a minimum
-constexpr int kEdgeStrips = 8;   // between two strips at the edge of a zone
 
 struct TableValue {
   double value, slope;
 };
 
-/// Intervals of a table and places in them, side by side. Places beyond the ends are taken there.
-struct Cubics {
-  static constexpr int kMost = kZoneStrips + 1;
-  double c0[kMost], c1[kMost], c2[kMost], c3[kMost], x[kMost];
-
-  void find(const ProfileTable& t, const double* place, int n) noexcept {
-    const double last = t.points - 2;
-    for (int i = 0; i < n; ++i) {
-      const double at = (place[i] - t.first) * t.per_step;
-      const std::int32_t k = !(at > 0.) ? 0 : static_cast<std::int32_t>(at < last ? at : last);
-      const double* const c = t.coefficient + 4 * k;
-      c0[i] = c[0], c1[i] = c[1], c2[i] = c[2], c3[i] = c[3];
-      x[i] = at - k;
-    }
-  }
-  double value(int i) const noexcept {
-    return c0[i] + x[i] * (c1[i] + x[i] * (c2[i] + x[i] * c3[i]));
-  }
-  /// Over the distance of two points.
-  double slope(int i) const noexcept { return c1[i] + x[i] * (2. * c2[i] + 3. * c3[i] * x[i]); }
-};
+/// A table at a place, the slope over the distance of two points. Places beyond the ends are taken
+/// there.
+inline TableValue cubic_at(const ProfileTable& t, double last, double place) noexcept {
+  const double at = (place - t.first) * t.per_step;
+  const std::int32_t k = !(at > 0.) ? 0 : static_cast<std::int32_t>(at < last ? at : last);
+  const double* const c = t.coefficient + 4 * k;
+  const double x = at - k;
+  return {c[0] + x * (c[1] + x * (c[2] + x * c[3])), c[1] + x * (2. * c[2] + 3. * c[3] * x)};
+}
 
 TableValue value_at(const ProfileTable& table, double place) noexcept {
-  Cubics cubics;
-  cubics.find(table, &place, 1);
-  return {cubics.value(0), table.per_step * cubics.slope(0)};
+  const TableValue own = cubic_at(table, table.points - 2, place);
+  return {own.value, table.per_step * own.slope};
 }
 
 /// A point in the rail's frame.
@@ -85,30 +71,32 @@ Lowest lowest(const ProfilePair& pair, const WheelsetPlace& at) noexcept {
 
 /// The line of these points over the rail.
 struct LowestLine {
+  static constexpr int kMost = kZoneStrips + 1;
   const ProfilePair& pair;
   Lowest wheel;
 
-  /// Gaps at places on the wheel. @param n  at most Cubics::kMost
+  /// Gaps at places on the wheel. @param n  at most kMost
   void gaps(const double* s, int n, double* gap) const noexcept {
-    const ProfileTable& rail = pair.rail;
-    const Lowest own = wheel;  // by itself, so that loops need not look at it again
-    const double per_step = pair.wheel.per_step, rail_per_step = rail.per_step;
-    const double begin = rail.first, end = begin + (rail.points - 1) / rail_per_step;
-    Cubics cubics;
-    double y[Cubics::kMost], z[Cubics::kMost];
-    cubics.find(pair.wheel, s, n);
+    const ProfileTable own = pair.wheel,
+                       rail = pair.rail;  // by themselves: loops need not look again
+    const Lowest at = wheel;
+    const double per_step = own.per_step, last = own.points - 2, rail_last = rail.points - 2;
+    const double begin = rail.first, end = begin + (rail.points - 1) / rail.per_step;
+    double growth[kMost], slope[kMost], y[kMost], z[kMost], under[kMost];
+    for (int i = 0; i < n; ++i) {
+      const TableValue found = cubic_at(own, last, s[i]);
+      growth[i] = found.value;
+      slope[i] = found.slope;
+    }
 #pragma omp simd
     for (int i = 0; i < n; ++i) {
-      const FramePoint p = own.point(s[i], cubics.value(i), per_step * cubics.slope(i));
+      const FramePoint p = at.point(s[i], growth[i], per_step * slope[i]);
       y[i] = p.y;
       z[i] = p.z;
     }
-    cubics.find(rail, y, n);
+    for (int i = 0; i < n; ++i) under[i] = cubic_at(rail, rail_last, y[i]).value;
 #pragma omp simd
-    for (int i = 0; i < n; ++i) {
-      const bool over = y[i] >= begin && y[i] <= end;
-      gap[i] = over ? z[i] - cubics.value(i) : kBeside;
-    }
+    for (int i = 0; i < n; ++i) gap[i] = y[i] >= begin && y[i] <= end ? z[i] - under[i] : kBeside;
   }
   TableValue wheel_at(double s) const noexcept { return value_at(pair.wheel, s); }
 };
@@ -117,6 +105,7 @@ struct LowestLine {
 struct Search {
   const double* place;
   double gap[kSearchStrips];
+  int first, last;  // strips over the rail
 };
 
 /// Gaps to the rail's table as if it were straight between its points.
@@ -135,9 +124,13 @@ void look(const LowestLine& line, Search& search) noexcept {
     z[i] = p.z;
   }
   const double last = rail.points - 1;
+  search.first = kSearchStrips;
+  search.last = -1;
   for (int i = 0; i < kSearchStrips; ++i) {
     search.gap[i] = kBeside;
     if (!(y[i] >= 0.) || !(y[i] < last)) continue;
+    if (search.last < 0) search.first = i;
+    search.last = i;
     const auto k = static_cast<std::int32_t>(y[i]);
     const double* const own = rail.coefficient + 4 * k;
     search.gap[i] = z[i] - (own[0] + (y[i] - k) * (own[4] - own[0]));
@@ -192,16 +185,20 @@ double apart(const Search& search, const Minimum& a, const Minimum& b,
 
 int find_minima(const LowestLine& line, const Search& search, double least_depth,
                 Minimum* found) noexcept {
-  int count = 0, lowest = 0;
+  int count = 0, candidates = 0, lowest = 0, candidate[kSearchStrips];
   const double* const gap = search.gap;
-  for (int i = 1; i < kSearchStrips; ++i)
-    if (gap[i] < gap[lowest]) lowest = i;
-  if (!(gap[lowest] < kBeside)) return 0;
-  for (int i = 0; i < kSearchStrips; ++i) {
-    const double before = i > 0 ? gap[i - 1] : kBeside,
-                 after = i + 1 < kSearchStrips ? gap[i + 1] : kBeside;
-    const bool is_least = gap[i] <= before && gap[i] < after;
-    if (!is_least || (gap[i] > kReach && i != lowest)) continue;
+  double before = kBeside;
+  for (int i = search.first; i <= search.last; ++i) {
+    const double after = i < search.last ? gap[i + 1] : kBeside;
+    candidate[candidates] = i;
+    candidates += gap[i] <= before && gap[i] < after ? 1 : 0;
+    before = gap[i];
+  }
+  for (int n = 1; n < candidates; ++n)
+    if (gap[candidate[n]] < gap[candidate[lowest]]) lowest = n;
+  for (int n = 0; n < candidates; ++n) {
+    const int i = candidate[n];
+    if (gap[i] > kReach && n != lowest) continue;
     const Minimum own = minimum_at(line, search, i);
     if (count > 0) {
       Minimum& last = found[count - 1];
@@ -241,34 +238,40 @@ Minimum as_one(const Minimum* from, const Minimum* to) noexcept {
   return one;
 }
 
-/// Places to both sides of another with gaps above a level, next to some below it: between the
-/// strips of the search a and a + 1, and b - 1 and b.
+/// Places to both sides of a minimum at which the gap meets a level: between the strips of the
+/// search a and a + 1, and b - 1 and b. The root of the gap above the minimum is straight where the
+/// gap is a parabola: one step along it from where it would be by the strips, by the gap there. At
+/// the end of a profile, or of the zone, it is the outer strip.
 struct Edges {
   double from, to;
 };
-Edges edges_of(const LowestLine& line, const Search& search, int a, int b, double level,
-               double place) noexcept {
-  constexpr int n = kEdgeStrips, points = n + 1;
-  const double left_step = (search.place[a + 1] - search.place[a]) / n,
-               right_step = (search.place[b] - search.place[b - 1]) / n;
-  double s[2 * points], gap[2 * points];
-  for (int k = 0; k < points; ++k) {
-    s[k] = search.place[a] + k * left_step;
-    s[points + k] = search.place[b] - k * right_step;
-  }
-  line.gaps(s, 2 * points, gap);
-  int left = 0, right = points;
-  while (left + 1 < n && !(gap[left + 1] < level) && s[left + 1] < place) ++left;
-  while (right + 1 < points + n && !(gap[right + 1] < level) && s[right + 1] > place) ++right;
-  // The edge is where a straight line through two places meets the level.
-  const auto crossing = [&](int outer) noexcept -> double {
-    const double fall = gap[outer] - gap[outer + 1], above = gap[outer] - level;
-    if (!(fall > 0.)) return 0.;
-    return above > fall ? 1. : above < -fall ? -1. : above / fall;
+Edges edges_of(const LowestLine& line, const Search& search, const Minimum& own, int a, int b,
+               double level) noexcept {
+  const auto root = [&](double gap) noexcept -> double {
+    return gap > own.gap ? square_root(gap - own.gap) : 0.;
   };
-  const double from = s[left] + crossing(left) * left_step,
-               to = s[right] - crossing(right) * right_step;
-  return {from < place ? from : s[left], to > place ? to : s[right]};
+  const int outer[2] = {a, b}, inner[2] = {a + 1, b - 1};
+  const double wanted = root(level);
+  double place[2], gap[2], per_root[2], most[2];
+  for (int side = 0; side < 2; ++side) {
+    const double from = search.place[outer[side]], far = search.gap[outer[side]];
+    const bool is_beyond =
+        side == 0 ? search.place[inner[side]] > own.place : search.place[inner[side]] < own.place;
+    most[side] = is_beyond ? own.place : search.place[inner[side]];
+    const double high = root(far), low = is_beyond ? 0. : root(search.gap[inner[side]]);
+    const bool is_end = !(far > level) || far >= kBeside || !(high > low);
+    per_root[side] = is_end ? 0. : (most[side] - from) / (low - high);
+    place[side] = from + (wanted - high) * per_root[side];
+  }
+  line.gaps(place, 2, gap);
+  for (int side = 0; side < 2; ++side) {
+    const double from = search.place[outer[side]],
+                 found = place[side] + (wanted - root(gap[side])) * per_root[side];
+    const double low = side == 0 ? from : most[side], high = side == 0 ? most[side] : from;
+    place[side] = found < low ? low : found < high ? found : high;
+  }
+  return {place[0] < own.place ? place[0] : search.place[a],
+          place[1] > own.place ? place[1] : search.place[b]};
 }
 
 /// Turns a zone whose gaps are upright to the plane in which it is pressed, that of the mean place
@@ -291,20 +294,19 @@ void fill_zone(const LowestLine& line, const Search& search, const Minimum& own,
   int a = inner - 1, b = inner + 1;
   while (a > own.first && search.gap[a] < level) --a;
   while (b < own.last && search.gap[b] < level) ++b;
-  const Edges edges = edges_of(line, search, a, b, level, own.place);
-  const double width = (edges.to - edges.from) / (kZoneStrips - 1);
+  const auto [from, to] = edges_of(line, search, own, a, b, level);
+  const double width = (to - from) / (kZoneStrips - 1);
   double s[kZoneStrips + 1], gap[kZoneStrips + 1];
-  for (int k = 0; k < kZoneStrips; ++k) s[k] = edges.from + k * width;
+  for (int k = 0; k < kZoneStrips; ++k) s[k] = from + k * width;
   s[kZoneStrips] = own.place;
   line.gaps(s, kZoneStrips + 1, gap);
   const double least = gap[kZoneStrips];
   for (int k = 0; k < kZoneStrips; ++k) zone.gap[k] = gap[k] > least ? gap[k] - least : 0.;
-  zone.patch = {zone.gap, kZoneStrips,      (own.place - edges.from) / width, {}, width,
-                0.,       line.pair.modulus};
+  zone.patch = {zone.gap, kZoneStrips, (own.place - from) / width, {},
+                width,    0.,          line.pair.modulus};
   const double least_hold = kLeastHold * least_depth;
   zone.patch.hold = hold_of(zone.patch, -least > least_hold ? -least : least_hold);
-  take_plane(line, edges.from + .5 * width * (zone.patch.hold.first + zone.patch.hold.second),
-             zone);
+  take_plane(line, from + .5 * width * (zone.patch.hold.first + zone.patch.hold.second), zone);
   zone.depth = -zone.cosine * least;
   zone.s = own.place;
   const double overlap = kVirtualPart * zone.depth;

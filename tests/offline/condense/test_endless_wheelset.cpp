@@ -145,7 +145,8 @@ TEST_CASE("no step reads the elements of a ring that traffic never reaches") {
   CHECK(state_hash(run.model(), run.state) == state_hash(poisoned.model, beside.state));
   // Nor does the model's making: its compliance within a step is that of the bays under traffic.
   const std::vector<double> give =
-      StepCompliance(run.model(), run.packed->lines()).table(run.packed->load_points()[0], 8);
+      StepCompliance(run.model(), run.packed->lines())
+          .table(run.packed->load_points()[0], 8, run.model().residual.elements);
   REQUIRE(give.size() == 2 * 9);
   CHECK(*std::min_element(give.begin(), give.end()) > 0.);
   CHECK_THAT(give.front(), Catch::Matchers::WithinRel(give.back(), 1e-9));  // a bay and the next

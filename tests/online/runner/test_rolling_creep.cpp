@@ -26,8 +26,9 @@ RollingCreep creep_by(CreepLaw law, bool grows, double kinetic = 1.) {
 
 double normal_at(double depth) { return kHertz * depth * std::sqrt(depth); }
 
-ContactCreep creep_at(const RollingCreep& c, double depth, const Slip<double>& slip) {
-  return creep_on_rail(c, c.patch, 1., {depth, normal_at(depth)}, slip, kSpeed);
+ContactCreep creep_at(const RollingCreep& c, double depth, const Slip<double>& slip,
+                      const Rolling& rolling = kSpeed) {
+  return creep_on_rail(c, c.patch, 1., {depth, normal_at(depth)}, slip, rolling);
 }
 
 struct Drawn {
@@ -49,6 +50,13 @@ TEST_CASE("derivatives of a contact's creep are those of its forces", "[rolling_
   for (const CreepLaw law : {CreepLaw::linear, CreepLaw::she, CreepLaw::fastsim, CreepLaw::polach})
     for (const auto& [grows, kinetic] : {std::pair{false, 1.}, {true, 1.}, {true, .4}}) {
       const RollingCreep c = creep_by(law, grows, kinetic);
+      Rolling rolling(kSpeed);
+      if (falls(c.friction)) {  // backwards and slowly, with creep before, on part of the friction
+        rolling.grip = .7;
+        rolling.over = -kSpeed;
+        const double before[3] = {.015, -.02, .1};
+        std::copy_n(before, 3, rolling.left);
+      }
       std::mt19937_64 random(11);
       for (int n = 0; n < 200; ++n) {
         const Drawn own = drawn(random, .3);
@@ -56,7 +64,7 @@ TEST_CASE("derivatives of a contact's creep are those of its forces", "[rolling_
         const Slip<double> slip = own.slip;
         INFO("law " << static_cast<int>(law) << ", grows " << grows << ", kinetic " << kinetic
                     << ", case " << n);
-        const ContactCreep at = creep_at(c, depth, slip);
+        const ContactCreep at = creep_at(c, depth, slip, rolling);
         const double largest = std::max({std::fabs(at.force[0]), std::fabs(at.force[1]), 1.});
         for (int k = 0; k < 4; ++k) {
           // FASTSIM has a kink wherever a cell begins to slide.
@@ -64,7 +72,7 @@ TEST_CASE("derivatives of a contact's creep are those of its forces", "[rolling_
           const auto moved = [&](double by) {
             Slip<double> s = slip;
             (k == 0 ? s.along : k == 1 ? s.across : s.spin) += k < 3 ? by : 0.;
-            return creep_at(c, depth + (k == 3 ? by : 0.), s);
+            return creep_at(c, depth + (k == 3 ? by : 0.), s, rolling);
           };
           const ContactCreep above = moved(step[k]), below = moved(-step[k]);
           if (above.slides() != below.slides()) continue;
