@@ -106,7 +106,7 @@ const std::vector<Partner> kPartners = {
     {"friction that falls",
      {"contact.creep=\"she\"",
       "contact.friction_table=[[0.0,0.3,0.3],[30.0,0.3,0.3],[31.0,0.1,0.1]]",
-      "contact.kinetic_part=0.5", "contact.half_slip_m_per_s=0.1"},
+      "contact.kinetic_part=0.5", "contact.half_slip_m_per_s=0.5"},
      Partner::nothing},
     {"rails with a cant", {"rail.cant=\"1:40\""}, Partner::rails},
     {"rails that differ", {"rail.right.young_pa=1.9e11"}, Partner::rails},

@@ -302,8 +302,9 @@ void fill_zone(const LowestLine& line, const Search& search, const Minimum& own,
   line.gaps(s, kZoneStrips + 1, gap);
   const double least = gap[kZoneStrips];
   for (int k = 0; k < kZoneStrips; ++k) zone.gap[k] = gap[k] > least ? gap[k] - least : 0.;
-  zone.patch = {zone.gap, kZoneStrips, (own.place - from) / width, {},
-                width,    0.,          line.pair.modulus};
+  const double deepest = (own.place - from) / width, last = kZoneStrips - 1;
+  zone.patch = {zone.gap, kZoneStrips,      deepest < last ? deepest : last, {}, width,
+                0.,       line.pair.modulus};
   const double least_hold = kLeastHold * least_depth;
   zone.patch.hold = hold_of(zone.patch, -least > least_hold ? -least : least_hold);
   take_plane(line, from + .5 * width * (zone.patch.hold.first + zone.patch.hold.second), zone);
