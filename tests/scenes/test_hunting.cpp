@@ -152,7 +152,7 @@ Swing swing(const Scene& scene, double from, double to, double apart) {
     static_cast<void>(advance_frame(model, run.state, run.workspace, outputs));
     if (n * dt >= from) y.push_back(outputs.wheelset_y[0]);
   }
-  const auto lag = static_cast<Eigen::Index>(apart / dt + .5);
+  const auto lag = static_cast<Eigen::Index>(std::lround(apart / dt));
   const auto count = static_cast<Eigen::Index>(y.size()) - 2 * lag;
   const Eigen::Map<const Eigen::VectorXd> all(y.data(), count + 2 * lag);
   Eigen::MatrixXd before(count, 2);

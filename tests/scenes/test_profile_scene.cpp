@@ -44,11 +44,10 @@ Words vehicle(double speed) {
 
 /// Growth of a small lateral motion after a short push, 1/s, by its highest points from 4 s on.
 double growth_at(const std::string& form, double speed, double dt) {
+  const std::string push = "vehicle[0].force[1].table=[[0.0,0.0],[0.05,5.0],[0.15,5.0],[0.2,0.0]]";
   const Traced run(
       profiled_wheelset({key_of("vehicle[0].speed_m_per_s", speed), key_of("step.dt_s", dt),
-                         "step.duration_s=12.0", "condense.kind=\"" + form + "\"",
-                         "vehicle[0].force[1].table=[[0.0,0.0],"
-                         "[0.05,5.0],[0.15,5.0],[0.2,0.0]]"}));
+                         "step.duration_s=12.0", "condense.kind=\"" + form + "\"", push}));
   const std::vector<double> y = run["wheelset.axle.y_m"];
   double sums[5] = {};
   for (std::size_t i = static_cast<std::size_t>(4. / dt); i + 1 < y.size(); ++i) {

@@ -21,8 +21,8 @@ struct Rolling {
   bool keeps;
   double grip;  // part of the rail's friction that is at the place
   /// A wheelset that goes along with its frame.
-  Rolling(double speed = 0.,
-          double of_friction = 1.) noexcept  // NOLINT(google-explicit-constructor)
+  // NOLINTNEXTLINE(google-explicit-constructor)
+  Rolling(double speed = 0., double of_friction = 1.) noexcept
       : frame(speed), over(speed), left{}, keeps(false), grip(of_friction) {}
 };
 
@@ -89,8 +89,9 @@ void grip_at(const RollingFriction& f, double x, double* part) noexcept;
 
 /// Friction that falls over the slip: adds what the slip does by it to the derivatives. As the
 /// limit alone has friction in it, a force is homogeneous in slip and friction.
-/// @param part  by which it has fallen
-/// @param slip  with_creep_before(); @param over_rail  without
+/// @param part  of friction that the slip leaves
+/// @param slip  with_creep_before()
+/// @param over_rail  the same without the creep before
 void add_fall(const RollingFriction& f, double part, const Slip<double>& slip,
               const Slip<double>& over_rail, ContactCreep& creep) noexcept;
 
