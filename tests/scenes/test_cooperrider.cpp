@@ -93,7 +93,8 @@ double linear_speed(const CreepPair& creep) {
   return found ? found->speed : 0.;
 }
 
-/// Of the front wheelset in the last 6 s, after a push, with friction of 10 kN on each wheel.
+/// The largest shift of the front wheelset in the last 6 s of a run that begins with a push, m.
+/// Friction is 10 kN on each wheel.
 double amplitude(const CreepPair& creep, double speed) {
   const Traced run(bogie_at(creep, speed, "creep = \"she\"\nfriction = 0.3\n",
                             "[[vehicle.force]]\nbody = \"front\"\ndirection = \"y\"\n"

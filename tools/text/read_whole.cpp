@@ -65,8 +65,8 @@ void Table::throw_kept(const InputError* last) const {
   Document& document = *view_->document;
   if (last) {
     document.refusals.push_back(kept_of(*last));
-  } else if (document.refusals
-                 .empty()) {  // all was read: a key that no getter asked for is unknown
+  } else if (document.refusals.empty()) {
+    // All was read: a key that no getter asked for is unknown.
     std::vector<Kept> unknown = unknown_keys(document, *view_->table, view_->name);
     std::move(unknown.begin(), unknown.end(), std::back_inserter(document.bad_values));
   }

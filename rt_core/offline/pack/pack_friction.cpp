@@ -50,8 +50,8 @@ void PackedModel::refuse_steep_friction(const Track& track) const {
     const RollingFriction& f = runner.contact.creep.friction;
     if (!falls(f)) continue;
     double rails[2] = {0., 0.};
+    const StepCompliance lines(model_, lines_);
     for (int rail = 0; rail < 2 && model_.lines > 0; ++rail) {
-      const StepCompliance lines(model_, lines_);
       const LoadPoint head{rail, model_.head_z[rail], 0., 1};
       for (const double own : lines.table(head, kPoints, tabled_elements(track)))
         rails[rail] = std::max(rails[rail], own / (condensed ? s.theta * s.dt : s.dt));

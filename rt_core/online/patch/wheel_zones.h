@@ -34,7 +34,7 @@ struct WheelsetPlace {
 };
 
 inline constexpr int kSearchStrips = 128;  // at which a wheel is looked at
-inline constexpr int kZoneStrips = 21;     // of one zone
+inline constexpr int kZoneStrips = 25;     // of one zone
 inline constexpr int kMostLeast = 3;       // least gaps of a wheel: tread, throat and flange
 /// Each of them, two or three that are next to each other as one.
 inline constexpr int kMostZones = kMostLeast * (kMostLeast + 1) / 2;
