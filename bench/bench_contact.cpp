@@ -35,7 +35,7 @@ std::vector<double> gap_of(int strips, double width) {
 StripPatch on_crown(const std::vector<double>& gap, double width) {
   const auto strips = static_cast<int>(gap.size());
   StripPatch patch{gap.data(), strips, .5 * (strips - 1), {}, width, kRadius, kModulus};
-  patch.hold = hold_of(patch, kHertz);
+  patch.collocation = collocation_of(patch, kHertz);
   return patch;
 }
 

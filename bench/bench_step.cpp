@@ -7,7 +7,7 @@
 
 #include "offline/start/start.h"
 #include "offline/vehicle/kinds.h"
-#include "peers/moving_load.h"
+#include "peers/peer_moving_load.h"
 
 namespace railstep {
 namespace {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "peers/moving_load.h"
+#include "peers/peer_moving_load.h"
 
 using namespace railstep;
 

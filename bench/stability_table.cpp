@@ -3,7 +3,7 @@
 #include <cstdio>
 #include <exception>
 
-#include "hard/stability.h"
+#include "hard/step_stability.h"
 
 int main() try {
   using namespace railstep;

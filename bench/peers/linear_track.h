@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "moving_load.h"
+#include "peer_moving_load.h"
 
 namespace railstep {
 

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "contest.h"
-#include "moving_load.h"
+#include "peer_moving_load.h"
 
 namespace {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "online/beam/kernels.h"
-#include "support/straight_rows.h"
+#include "support/stored_kernels.h"
 
 using namespace railstep;
 

@@ -4,7 +4,8 @@
 #include <vector>
 
 #include "online/beam/planar.h"
-#include "support/straight_rows.h"
+#include "support/beam_energy.h"
+#include "support/stored_kernels.h"
 
 using namespace railstep;
 

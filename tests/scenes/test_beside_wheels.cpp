@@ -159,7 +159,7 @@ TEST_CASE("contacts beside a rotor are pressed as deep as both make the rails si
     const double middle = .5 * model.scheme.dt;
     find_vehicle_contacts(model, n, middle, {before.u, {before.u, before.v}}, first);
     find_vehicle_contacts(model, n, middle, {after.u, {after.u, after.v}}, last);
-    for (ContactId i = 0; i < contact_count(model); ++i) {
+    for (const ContactId i : contacts(model)) {
       const double depth = model.scheme.theta * last[i].penetration +
                            (1. - model.scheme.theta) * first[i].penetration;
       const double force = model.contact[i].law.hertz * std::pow(std::max(depth, 0.), 1.5);

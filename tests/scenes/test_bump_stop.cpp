@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "answer/running.h"
+#include "answer/scene_running.h"
 #include "offline/energy/energy_account.h"
 #include "online/step/step.h"
 #include "run/simulation.h"

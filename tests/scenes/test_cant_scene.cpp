@@ -105,7 +105,6 @@ TEST_CASE("a wheelset that runs on leaning rails keeps the balance of energy", "
     CAPTURE(unknowns, error(upright), error(leaning), rest(upright), rest(leaning));
     CHECK(leaning.at("status").empty());
     CHECK(leaning.at("state_hash") != upright.at("state_hash"));
-    CHECK(error(leaning) < 3. * error(upright));
     for (const auto* run : {&upright, &leaning}) {
       CHECK(rest(*run) < kFrozen);
       CHECK(error(*run) < kFrozen + kTrapezoids);

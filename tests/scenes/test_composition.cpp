@@ -277,8 +277,11 @@ TEST_CASE("the mirror image of what runs beside a vehicle makes that of its forc
     const std::string name = partner.name;
     // One of two rails that differ is the left one, and an unevenness is drawn at random.
     if (name == "rails that differ" || name == "unevenness") return;
+    const Partner image = mirrored(partner);
     const std::vector<double> own = forces_after(scene_of(form, partner, "25.0")),
-                              other = forces_after(scene_of(form, mirrored(partner), "25.0"));
+                              other = image.words == partner.words
+                                          ? own
+                                          : forces_after(scene_of(form, image, "25.0"));
     REQUIRE(own.size() == other.size());
     double most = 0., largest = 0.;
     for (std::size_t i = 0; i < own.size(); ++i) {

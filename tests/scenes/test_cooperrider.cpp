@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "answer/running.h"
+#include "answer/scene_running.h"
 #include "support/coned_wheelset.h"
 #include "support/scene_run.h"
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "answer/running.h"
+#include "answer/scene_running.h"
 #include "offline/energy/energy_account.h"
 #include "support/bad_input.h"
 #include "support/scene_run.h"

@@ -56,7 +56,7 @@ TEST_CASE("an external wheel beside others presses as a load at its place does",
         most = std::max(most, std::fabs(loaded.state.u[i] - pressed.state.u[i]));
         peak = std::max(peak, std::fabs(loaded.state.u[i]));
       }
-      for (std::int32_t i = 0; i < contact_count(model); ++i)
+      for (const ContactId i : contacts(model))
         CHECK(a.contact_force[i] == Approx(b.contact_force[i]).epsilon(1e-6));
     }
     CHECK(most < 1e-9 * peak);

@@ -47,7 +47,7 @@ struct Steps {
 };
 
 /// Contact of the left flange of a lone wheelset, behind its two treads.
-constexpr ContactId kLeftFlange = 2;
+constexpr ContactId kLeftFlange{2};
 
 /// Lateral parts of the normals of treads and flanges in the next step, for that step's forces.
 struct Push {
@@ -265,11 +265,17 @@ TEST_CASE("a wrong flange is refused in one sentence", "[scene]") {
     CHECK(ran.code == 2);
     return ran.err;
   };
-  CHECK_THAT(said("{}"), Contains("clearance_m"));
-  CHECK_THAT(said("{clearance_m=7.0}"), Contains("above 0, at most 0.1"));
-  CHECK_THAT(said("{clearance_m=7e-3, angle_deg=90}"), Contains("at least 20, at most 85"));
-  CHECK_THAT(said("{clearance_m=7e-3, height_m=0.014}"), Contains("above 0.014"));
-  CHECK_THAT(said("{clearance_m=7e-3, contact=\"linear\"}"), Contains("stiffness_n_per_m"));
+  const std::string missing = "E-KEY-01", out_of_range = "E-KEY-05";
+  CHECK_THAT(said("{}"), Contains("clearance_m") && Contains(missing));
+  CHECK_THAT(said("{clearance_m=7.0}"),
+             Contains("clearance_m = 7 ") && Contains("0.1") && Contains(out_of_range));
+  CHECK_THAT(said("{clearance_m=7e-3, angle_deg=90}"), Contains("angle_deg = 90 ") &&
+                                                           Contains("20") && Contains("85") &&
+                                                           Contains(out_of_range));
+  CHECK_THAT(said("{clearance_m=7e-3, height_m=0.014}"),
+             Contains("height_m = 0.014 ") && Contains(out_of_range));
+  CHECK_THAT(said("{clearance_m=7e-3, contact=\"linear\"}"),
+             Contains("stiffness_n_per_m") && Contains(missing));
   CHECK_THAT(said("{clearance_m=7e-3, damping_n_s_per_m=1.0}"),
              Contains("damping_n_s_per_m") && Contains("E-FLANGE-01"));
   CHECK_THAT(said("{clearance_m=7e-3, contact=\"linear\", stiffness_n_per_m=1e7, "

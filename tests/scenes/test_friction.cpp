@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "offline/energy/energy_account.h"
-#include "support/artefact.h"
 #include "support/bad_input.h"
+#include "support/block_fields.h"
 #include "support/scene_run.h"
 #include "support/shipped.h"
 

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "answer/running.h"
+#include "answer/scene_running.h"
 #include "support/coned_wheelset.h"
 #include "support/pi.h"
 #include "support/scene_run.h"

@@ -6,11 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "answer/running.h"
+#include "answer/scene_running.h"
 #include "offline/energy/energy_account.h"
 #include "offline/runner/stability.h"
 #include "online/model/snapshot.h"
-#include "support/artefact.h"
+#include "support/block_fields.h"
 #include "support/scene_run.h"
 
 using namespace railstep;

@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "answer/running.h"
+#include "answer/scene_running.h"
 #include "offline/energy/energy_account.h"
 #include "online/model/snapshot.h"
-#include "support/artefact.h"
+#include "support/block_fields.h"
 #include "support/scene_run.h"
 
 using namespace railstep;
@@ -294,8 +294,6 @@ TEST_CASE("a vehicle at rest on a track that gives way stays as its start has it
     CHECK(sum == Approx(9.81 * 44482.).epsilon(1e-7));
   }
 }
-
-namespace {}  // namespace
 
 TEST_CASE("on a track that is stiff enough a vehicle runs as on rigid rails", "[rail_vehicle]") {
   const std::string rails =

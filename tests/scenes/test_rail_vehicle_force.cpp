@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "answer/running.h"
+#include "answer/scene_running.h"
 #include "offline/energy/energy_account.h"
 #include "run/inputs.h"
 #include "support/program.h"

@@ -4,7 +4,7 @@
 #include <limits>
 #include <random>
 
-#include "support/artefact.h"
+#include "support/block_fields.h"
 
 namespace railstep {
 

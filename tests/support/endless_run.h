@@ -4,8 +4,8 @@
 #include <cmath>
 #include <vector>
 
-#include "support/artefact.h"
-#include "support/endless.h"
+#include "support/block_fields.h"
+#include "support/endless_tracks.h"
 
 namespace railstep {
 

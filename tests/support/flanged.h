@@ -2,7 +2,7 @@
 #include <array>
 #include <cmath>
 
-#include "support/condensed.h"
+#include "support/condensed_tracks.h"
 #include "support/rigid_track.h"
 
 namespace railstep {

@@ -1,5 +1,5 @@
 #pragma once
-#include "support/condensed.h"
+#include "support/condensed_tracks.h"
 #include "support/fine_track.h"
 #include "support/reference_tracks.h"
 

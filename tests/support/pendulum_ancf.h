@@ -4,7 +4,8 @@
 #include <Eigen/SparseCore>
 #include <array>
 
-#include "support/pendulum_run.h"
+#include "support/beam_energy.h"
+#include "support/pendulum_reference.h"
 #include "support/planar_beam.h"
 
 namespace railstep {

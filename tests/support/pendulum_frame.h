@@ -1,6 +1,6 @@
 #pragma once
 #include "support/floating_frame.h"
-#include "support/pendulum_run.h"
+#include "support/pendulum_reference.h"
 #include "support/planar_beam.h"
 
 namespace railstep {

@@ -1,7 +1,7 @@
 #pragma once
 #include <Eigen/Dense>
 
-#include "support/pendulum_run.h"
+#include "support/pendulum_reference.h"
 
 namespace railstep {
 

@@ -3,7 +3,7 @@
 #include <string>
 
 #include "offline/vehicle/kinds.h"
-#include "support/artefact.h"
+#include "support/block_fields.h"
 
 namespace railstep {
 

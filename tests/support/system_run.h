@@ -12,6 +12,7 @@
 #include "offline/system/pack_system.h"
 #include "online/step/step.h"
 #include "online/system/sensor.h"
+#include "support/beam_energy.h"
 
 namespace railstep {
 

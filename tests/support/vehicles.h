@@ -4,7 +4,7 @@
 
 #include "offline/start/start.h"
 #include "offline/vehicle/kinds.h"
-#include "support/condensed.h"
+#include "support/condensed_tracks.h"
 
 namespace railstep {
 

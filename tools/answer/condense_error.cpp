@@ -39,8 +39,8 @@ TraceTable run_of(const Scene& scene, std::int64_t frames) {
   return compared(run.columns(), simulate(run, frames, {}, true));
 }
 
-/// Whether wheels hold on to the rail by what stands for Hertz's law. A single mass on a spring is
-/// that spring, whose law is not that of a contact.
+/// Whether the vehicle's contact replaces Hertz's law by a bond or by a linear spring. The spring
+/// of a single mass is not a contact: it is the vehicle's own.
 bool stands_for_hertz(const VehicleScene& v) {
   return v.contact == WheelContactKind::bonded ||
          (v.contact == WheelContactKind::linear && v.vehicle.bodies.size() > 1);

@@ -14,7 +14,7 @@ struct ProfileRequest {
   double inclination = 1. / 40.;  // of the rails, tangent
   double gauge = 1.435;           // m
   double back_to_back = 1.36;     // m, of the wheels
-  double radius = .46;            // m, of the wheels at the tread datum
+  double radius = kWheelRadius;   // m, of the wheels at the tread datum
   double contact_distance = 1.5;  // m, of the contacts, in the formula of conicity
   double range = 8e-3;            // m, largest shift
   bool roll = true;               // of the rigid contact that is asked for

@@ -22,6 +22,7 @@
 #include "report/emit_c.h"
 #include "run/model_size.h"
 #include "run/unit_note.h"
+#include "text/remarks.h"
 #include "text/write.h"
 
 namespace railstep {
@@ -134,8 +135,9 @@ nlohmann::ordered_json write(const std::vector<std::byte>& block, const Condense
   return to_json(made, block);
 }
 
-nlohmann::ordered_json condense(const Scene& scene, const CondenseOptions& o) {
-  print_note(lopsided_note(scene));
+nlohmann::ordered_json condense(const Scene& scene, const CondenseOptions& o, Remarks& remarks) {
+  remarks.note(lopsided_note(scene));
+  remarks.print();
   const Built built(scene);
   const PackedModel& packed = *built.packed;
   Condensed made{packed.model(),
@@ -173,7 +175,7 @@ nlohmann::ordered_json condense(const Scene& scene, const CondenseOptions& o) {
 
 /// Nothing of a system is left out: the errors are those of the track beside it, and 0 without a
 /// track.
-nlohmann::ordered_json condense(const SystemScene& scene, const CondenseOptions& o) {
+nlohmann::ordered_json condense(const SystemScene& scene, const CondenseOptions& o, Remarks&) {
   const BuiltSystem built(scene);
   const Model& model = built.packed->model();
   const int own = unknowns_of(model.system);
@@ -197,8 +199,12 @@ nlohmann::ordered_json condense(const SystemScene& scene, const CondenseOptions&
 
 /// Condenses either kind of scene. A refusal by the models of the errors is one of the scene too.
 nlohmann::ordered_json condense(const CondenseOptions& o) try {
-  return std::visit([&o](const auto& scene) { return condense(scene, o); },
-                    read_any_scene(o.scene, o.overrides));
+  Remarks remarks;
+  nlohmann::ordered_json result =
+      std::visit([&](const auto& scene) { return condense(scene, o, remarks); },
+                 read_any_scene(o.scene, o.overrides));
+  remarks.add_to(result);
+  return result;
 } catch (const Refused& error) {
   throw InputError(o.scene, error);
 }
@@ -277,7 +283,7 @@ Command add_condense(CLI::App& app) {
   return {sub, [o] {
             const nlohmann::ordered_json result = condense(*o);
             if (o->json)
-              fmt::print("{}\n", result.dump(2));
+              print_json(result);
             else
               print_errors_table(result, o->out);
             return Exit::done;

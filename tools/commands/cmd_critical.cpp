@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "answer/running.h"
+#include "answer/scene_running.h"
 #include "commands/command.h"
 #include "commands/options.h"
 

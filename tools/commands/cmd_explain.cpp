@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cctype>
 
 #include "commands/command.h"
 #include "text/explanation.h"
@@ -6,8 +7,19 @@
 namespace railstep {
 namespace {
 
-Exit run_explain(const std::string& id) {
+/// A word in the case of the ids: those of messages have capitals and a hyphen, those of status
+/// bits neither.
+std::string as_id(std::string word) {
+  const bool is_message = word.find('-') != std::string::npos;
+  std::transform(word.begin(), word.end(), word.begin(), [is_message](unsigned char c) {
+    return static_cast<char>(is_message ? std::toupper(c) : std::tolower(c));
+  });
+  return word;
+}
+
+Exit run_explain(const std::string& word) {
   const std::vector<Explanation> all = explanations();
+  const std::string id = as_id(word);
   if (id.empty()) {
     for (const Explanation& each : all) fmt::print("{:<20} {}\n", each.id, first_sentence(each));
     return Exit::done;
@@ -20,7 +32,7 @@ Exit run_explain(const std::string& id) {
     for (const Explanation& each : all) ids.emplace_back(each.id);
     throw InputError("E-CLI-14", fmt::format("'{}' is not the id of a message or a status bit; did "
                                              "you mean '{}'? `railstep explain` lists all",
-                                             id.substr(0, 60), nearest(id, ids)));
+                                             word.substr(0, 60), nearest(id, ids)));
   }
   fmt::print("{}\n\n{}\n", found->id, found->text);
   return Exit::done;

@@ -10,6 +10,7 @@
 #include "report/fit_report.h"
 #include "section/fit_profile.h"
 #include "section/section_file.h"
+#include "text/remarks.h"
 #include "text/write.h"
 
 namespace railstep {
@@ -128,10 +129,20 @@ Exit run_fit(const FitOptions& o) {
   const bool fits = !result.refusal;
   if (fits && !o.out.empty()) write_file(o.out, to_toml(result));
   if (fits && !o.report.empty()) write_file(o.report, to_html(result));
-  fmt::print("{}\n", o.json ? to_json(result).dump(2) : to_table(result));
-  for (const Message& warning : result.warnings)
-    fmt::print(stderr, "warning: {}\n", warning.line());
-  if (!fits) fmt::print(stderr, "error: {}: {}\n", o.profile, result.refusal->line());
+  Remarks remarks;
+  for (const Message& warning : result.warnings) remarks.warning(warning);
+  if (!fits) {
+    Message refusal = *result.refusal;
+    refusal.text = fmt::format("{}: {}", o.profile, refusal.text);
+    remarks.error(refusal);
+  }
+  nlohmann::ordered_json told = to_json(result);
+  remarks.add_to(told);
+  if (o.json)
+    print_json(told);
+  else
+    fmt::print("{}\n", to_table(result));
+  remarks.print();
   return fits ? Exit::done : Exit::not_reached;
 }
 

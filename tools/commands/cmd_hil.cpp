@@ -23,6 +23,7 @@
 #include "run/memory.h"
 #include "run/recording.h"
 #include "run/simulate.h"
+#include "text/remarks.h"
 #include "text/write.h"
 
 namespace railstep {
@@ -220,14 +221,12 @@ nlohmann::ordered_json to_json(const HilOptions& o, const HilPlan& plan, const H
   return told;
 }
 
-void warn_of_refusals(const std::vector<RealtimeSetting>& settings) {
+void warn_of_refusals(const std::vector<RealtimeSetting>& settings, Remarks& remarks) {
   for (const RealtimeSetting& each : settings)
     if (!each.done)
-      fmt::print(stderr, "warning: {}\n",
-                 Message("W-HIL-01", fmt::format("the system refused {} ({}); the run goes on "
-                                                 "without it",
-                                                 each.name, each.reason))
-                     .line());
+      remarks.warning({"W-HIL-01", fmt::format("the system refused {} ({}); the run goes on "
+                                               "without it",
+                                               each.name, each.reason)});
 }
 
 /// Why another process ended the run; nothing where none did.
@@ -240,34 +239,34 @@ std::optional<Failed> ended_by_others(const HilRecord& record) {
   return std::nullopt;
 }
 
+/// Adds the reason why the run did not reach its end, or frames that were late.
+void judge(const HilRecord& record, const Simulation& run, Remarks& remarks) {
+  if (record.first_bad_unknown >= 0)
+    return remarks.error(nonfinite_error(run, record.first_bad_unknown));
+  if (record.paced.stopped)
+    return remarks.error(
+        {"E-HIL-17", fmt::format("frame {} ended {:.1f} us after its slot, and --policy stop "
+                                 "ended the run",
+                                 record.paced.frames - 1,
+                                 1e-3 * static_cast<double>(record.paced.most_behind_ns))});
+  if (const auto ended = ended_by_others(record))
+    return remarks.error({ended->id(), ended->sentence()});
+  if (record.safe_stop_frame >= 0)
+    return remarks.error({"E-HIL-18", fmt::format("no inputs came for the time of --silence: a "
+                                                  "safe stop brought them to 0 from frame {} on",
+                                                  record.safe_stop_frame)});
+  if (record.paced.overruns > 0)
+    remarks.note(Message("W-HIL-02",
+                         fmt::format("{} frames ended after their slot", record.paced.overruns)));
+}
+
 /// Prints what the run met.
-Exit verdict(const HilRecord& record, const Simulation& run) {
+Exit verdict(const HilRecord& record, Remarks& remarks) {
   for (const std::string& name : status_names(record.status))
     if (name != "nonfinite_state")
       fmt::print(stderr, "note: {}: {}\n", name, status_sentence(name, {}));
-  const auto failed = [](const std::string& sentence) {
-    fmt::print(stderr, "error: {}\n", sentence);
-    return Exit::not_reached;
-  };
-  if (record.first_bad_unknown >= 0)
-    return failed(nonfinite_sentence(run, record.first_bad_unknown));
-  if (record.paced.stopped)
-    return failed(named(fmt::format("frame {} ended {:.1f} us after its slot, and --policy stop "
-                                    "ended the run",
-                                    record.paced.frames - 1,
-                                    1e-3 * static_cast<double>(record.paced.most_behind_ns)),
-                        "E-HIL-17"));
-  if (const auto ended = ended_by_others(record)) return failed(ended->what());
-  if (record.safe_stop_frame >= 0)
-    return failed(named(fmt::format("no inputs came for the time of --silence: a safe stop "
-                                    "brought them to 0 from frame {} on",
-                                    record.safe_stop_frame),
-                        "E-HIL-18"));
-  if (record.paced.overruns > 0)
-    fmt::print(
-        stderr, "note: {}\n",
-        named(fmt::format("{} frames ended after their slot", record.paced.overruns), "W-HIL-02"));
-  return Exit::done;
+  remarks.print();
+  return remarks.has_errors() ? Exit::not_reached : Exit::done;
 }
 
 /// A recording with one hash, behind the last frame: no hash is made while frames are timed.
@@ -306,7 +305,9 @@ Exit run(const HilOptions& o) {
   if (!o.names.empty()) write_file(o.names, names_text(layout));
   const HilRecord record = run_paced(*simulation, plan, exchanges.all);
   if (exchanges.udp) exchanges.udp->finish();
-  warn_of_refusals(record.settings);
+  Remarks remarks;
+  warn_of_refusals(record.settings, remarks);
+  remarks.print();
   if (record.unheard) {
     if (const auto ended = ended_by_others(record)) throw Failed(*ended);
     fail("E-HIL-10",
@@ -320,11 +321,13 @@ Exit run(const HilOptions& o) {
                hil_report(std::filesystem::path(o.input).stem().string(), told,
                           {{"frame", &record.frame}, {"empty loop", &record.empty_frame}},
                           {{"run", &record.wakeup}, {"empty loop", &record.empty_wakeup}}));
+  judge(record, *simulation, remarks);
+  remarks.add_to(told);
   if (o.json)
-    fmt::print("{}\n", told.dump(2));
+    print_json(told);
   else
     print_hil_table(told);
-  return verdict(record, *simulation);
+  return verdict(record, remarks);
 }
 
 void add_exchange_options(CLI::App& sub, HilOptions& o) {

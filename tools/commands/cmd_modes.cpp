@@ -8,13 +8,14 @@
 #include <string>
 #include <vector>
 
-#include "answer/running.h"
+#include "answer/scene_running.h"
 #include "build/build.h"
 #include "commands/command.h"
 #include "commands/options.h"
 #include "offline/analysis/damped.h"
 #include "offline/track/fixed_port.h"
 #include "run/unit_note.h"
+#include "text/remarks.h"
 
 namespace railstep {
 namespace {
@@ -27,12 +28,13 @@ struct ModesOptions {
   bool json = false;
 };
 
-NaturalModes solve(const ModesOptions& o) try {
+NaturalModes solve(const ModesOptions& o, Remarks& remarks) try {
   // Eigen blocks its products by the sizes of the caches; with fixed sizes the bits are the same on
   // all processors.
   Eigen::setCpuCacheSizes(32 << 10, 256 << 10, 2 << 20);
   const Scene scene = read_scene(o.scene, o.overrides);
-  print_note(lopsided_note(scene));
+  remarks.note(lopsided_note(scene));
+  remarks.print();
   return natural_modes(linear_about_rest(track_of(scene)), o.count);
 } catch (const Refused& error) {
   throw InputError(o.scene, error);
@@ -42,6 +44,10 @@ void print_table(const NaturalModes& modes) {
   fmt::print("mode  frequency, Hz  damping ratio\n");
   for (std::size_t i = 0; i < modes.frequency.size(); ++i)
     fmt::print("{:4}  {:13.6g}  {:13.6g}\n", i + 1, modes.frequency[i], modes.damping_ratio[i]);
+}
+
+nlohmann::ordered_json to_json(const NaturalModes& modes) {
+  return {{"frequencies_hz", modes.frequency}, {"damping_ratios", modes.damping_ratio}};
 }
 
 nlohmann::ordered_json to_json(const std::vector<RunningMode>& modes) {
@@ -57,13 +63,22 @@ void print_table(const std::vector<RunningMode>& modes) {
     fmt::print("{:4}  {:14.7g}  {:13.6g}\n", i + 1, modes[i].frequency, modes[i].damping_ratio);
 }
 
-/// Modes of vehicles that run, instead of those of the track.
-void print_running(const ModesOptions& o) {
-  const auto modes = modes_at_speed(read_scene(o.scene, o.overrides), *o.speed);
-  if (o.json)
-    fmt::print("{}\n", to_json(modes).dump(2));
+template <typename Modes>
+void print(const Modes& modes, const Remarks& remarks, bool json) {
+  if (!json) return print_table(modes);
+  nlohmann::ordered_json result = to_json(modes);
+  remarks.add_to(result);
+  print_json(result);
+}
+
+/// The modes of the track, or of the vehicles where they have a speed.
+Exit run_modes(const ModesOptions& o) {
+  Remarks remarks;
+  if (o.speed)
+    print(modes_at_speed(read_scene(o.scene, o.overrides), *o.speed), remarks, o.json);
   else
-    print_table(modes);
+    print(solve(o, remarks), remarks, o.json);
+  return Exit::done;
 }
 
 }  // namespace
@@ -81,20 +96,7 @@ Command add_modes(CLI::App& app) {
   add_overrides(*sub, o->overrides);
   sub->add_flag("--json", o->json, "one JSON object on stdout");
   sub->footer("Example: railstep modes config/scenes/free_rail.toml --count 12");
-  return {sub, [o] {
-            if (o->speed) {
-              print_running(*o);
-              return Exit::done;
-            }
-            const NaturalModes modes = solve(*o);
-            if (o->json)
-              fmt::print("{}\n", nlohmann::ordered_json{{"frequencies_hz", modes.frequency},
-                                                        {"damping_ratios", modes.damping_ratio}}
-                                     .dump(2));
-            else
-              print_table(modes);
-            return Exit::done;
-          }};
+  return {sub, [o] { return run_modes(*o); }};
 }
 
 }  // namespace railstep

@@ -1,5 +1,6 @@
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -12,6 +13,7 @@
 #include "report/pareto_report.h"
 #include "study/advice.h"
 #include "text/progress_bar.h"
+#include "text/remarks.h"
 #include "text/write.h"
 
 namespace railstep {
@@ -68,16 +70,19 @@ Exit run(const ParetoOptions& o) {
     write_file(o.report, pareto_report(fmt::format("Speed against error: {}",
                                                    o.request.scene.filename().string()),
                                        result));
+  Remarks remarks;
+  if (std::none_of(result.rows.begin(), result.rows.end(),
+                   [](const SettingRow& row) { return row.failure.empty(); }))
+    remarks.error({"E-STUDY-14", "no setting made a result; the first one failed: " +
+                                     result.rows.front().failure});
+  nlohmann::ordered_json told = to_json(result);
+  remarks.add_to(told);
   if (o.json)
-    fmt::print("{}\n", to_json(result).dump(2));
+    print_json(told);
   else
     print_front(result);
-  for (const SettingRow& row : result.rows)
-    if (row.failure.empty()) return Exit::done;
-  fmt::print(stderr, "error: {}\n",
-             named("no setting made a result; the first one failed: " + result.rows.front().failure,
-                   "E-STUDY-14"));
-  return Exit::not_reached;
+  remarks.print();
+  return remarks.has_errors() ? Exit::not_reached : Exit::done;
 }
 
 }  // namespace

@@ -56,7 +56,8 @@ Command add_profile(CLI::App& app) {
       ->check(within(0.5, 2.0));
   sub->add_option("--back-to-back", o->back_to_back, "of the wheels, m (default 1.36)")
       ->check(within(0.4, 1.9));
-  sub->add_option("--radius", o->radius, "of the wheels at the tread datum, m (default 0.46)")
+  sub->add_option("--radius", o->radius,
+                  fmt::format("of the wheels at the tread datum, m (default {})", kWheelRadius))
       ->check(within(0.1, 2.0));
   sub->add_option("--contact-distance", o->contact_distance,
                   "of the contacts, for the conicity, m (default 1.5)")

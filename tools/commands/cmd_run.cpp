@@ -24,8 +24,8 @@
 #include "run/speed_note.h"
 #include "run/trace.h"
 #include "run/unit_note.h"
-#include "text/message_json.h"
 #include "text/progress_bar.h"
+#include "text/remarks.h"
 #include "text/write.h"
 
 namespace railstep {
@@ -137,16 +137,12 @@ std::optional<Message> energy_note(const std::optional<EnergyBalance>& energy) {
 }
 
 /// Prints what the run met.
-/// @param notes  notes on speed, energy and depth
-Exit verdict(const Simulation& run, const RunRecord& record, const std::vector<Message>& notes) {
-  for (const Message& note : notes) fmt::print(stderr, "note: {}\n", note.line());
-  for (const std::string& name : status_names(record.status)) {
+Exit verdict(const RunRecord& record, Remarks& remarks) {
+  for (const std::string& name : status_names(record.status))
     if (name != "nonfinite_state")
       fmt::print(stderr, "note: {}: {}\n", name, status_sentence(name, record));
-    else
-      fmt::print(stderr, "error: {}\n", nonfinite_sentence(run, record.first_bad_unknown));
-  }
-  return has(record.status, Status::nonfinite_state) ? Exit::not_reached : Exit::done;
+  remarks.print();
+  return remarks.has_errors() ? Exit::not_reached : Exit::done;
 }
 
 /// The files of a run of a track for ParaView, where they are asked for.
@@ -191,14 +187,11 @@ Exit run(const RunOptions& o) {
                                    : simulation_of(*scene);
   const std::int64_t frames = frames_of(o, artefact, simulation->model());
   const Scene* const track = scene ? std::get_if<Scene>(&*scene) : nullptr;
-  std::vector<Message> notes;
-  const auto note = [&notes](const std::optional<Message>& said) {
-    if (said) notes.push_back(*said);
-  };
+  Remarks remarks;
   if (track != nullptr) {
-    note(speed_note(*track, simulation->track()));
-    note(constants_note(*track));
-    note(lopsided_note(*track));
+    remarks.note(speed_note(*track, simulation->track()));
+    remarks.note(constants_note(*track));
+    remarks.note(lopsided_note(*track));
   }
   if (!o.report.empty()) need_gnuplot();
   std::optional<Trace> trace;
@@ -235,14 +228,16 @@ Exit run(const RunOptions& o) {
     write_file(o.report,
                run_report(std::filesystem::path(o.input).stem().string(), *simulation, record));
   nlohmann::ordered_json result = to_json(*simulation, record, energy);
-  note(energy_note(energy));
-  note(depth_note(record));
-  result["warnings"] = to_json(notes);
+  remarks.note(energy_note(energy));
+  remarks.note(depth_note(record));
+  if (record.first_bad_unknown >= 0)
+    remarks.error(nonfinite_error(*simulation, record.first_bad_unknown));
+  remarks.add_to(result);
   if (o.json)
-    fmt::print("{}\n", result.dump(2));
+    print_json(result);
   else
     print_run_table(result);
-  return verdict(*simulation, record, notes);
+  return verdict(record, remarks);
 }
 
 }  // namespace

@@ -5,11 +5,12 @@
 #include <string>
 #include <vector>
 
-#include "answer/running.h"
+#include "answer/scene_running.h"
 #include "answer/static_solution.h"
 #include "commands/command.h"
 #include "commands/options.h"
 #include "run/unit_note.h"
+#include "text/remarks.h"
 #include "text/write.h"
 
 namespace railstep {
@@ -43,12 +44,8 @@ void print_table(const StaticSolution& solution) {
   if (!solution.stable) fmt::print("unstable: the rails buckle out of this shape\n");
 }
 
-void print_history(const std::string& scene, const StaticSolution& solution) {
-  fmt::print(stderr, "error: {}\n{:>12} {:>9} {:>12}\n",
-             named(scene + ": no equilibrium was found within static.most_iterations and "
-                           "static.most_load_halvings",
-                   "E-STATIC-02"),
-             "load factor", "iteration", "residual");
+void print_history(const StaticSolution& solution) {
+  fmt::print(stderr, "{:>12} {:>9} {:>12}\n", "load factor", "iteration", "residual");
   for (const NewtonStep& step : solution.history)
     fmt::print(stderr, "{:>12.6g} {:>9} {:>12.3e}\n", step.load_factor, step.iteration,
                step.residual);
@@ -91,10 +88,13 @@ void print_table(const RunningLoads& loads) {
 /// Rail vehicles: the steady forces of their wheels.
 Exit run_rail_vehicles(const Scene& scene, bool json) {
   const RunningLoads loads = running_loads(scene);
-  if (json)
-    fmt::print("{}\n", to_json(loads).dump(2));
-  else
+  if (!json) {
     print_table(loads);
+    return Exit::done;
+  }
+  nlohmann::ordered_json result = to_json(loads);
+  Remarks().add_to(result);
+  print_json(result);
   return Exit::done;
 }
 
@@ -103,16 +103,25 @@ Exit run_static(const StaticOptions& o) {
   if (!o.model.empty()) overrides.push_back(fmt::format("track.model=\"{}\"", o.model));
   const Scene scene = read_scene(o.scene, overrides);
   if (!scene.rail_vehicles.empty()) return run_rail_vehicles(scene, o.json);
-  print_note(lopsided_note(scene));
+  Remarks remarks;
+  remarks.note(lopsided_note(scene));
+  remarks.print();
   const StaticSolution solution = solve_static(scene);
-  if (!solution.converged) print_history(o.scene, solution);
+  if (!solution.converged)
+    remarks.error({"E-STATIC-02", o.scene +
+                                      ": no equilibrium was found within static.most_iterations "
+                                      "and static.most_load_halvings"});
+  if (solution.converged && !o.shape.empty()) write_file(o.shape, to_csv(solution));
+  nlohmann::ordered_json result = to_json(solution);
+  remarks.add_to(result);
   if (o.json)
-    fmt::print("{}\n", to_json(solution).dump(2));
+    print_json(result);
   else if (solution.converged)
     print_table(solution);
-  if (!solution.converged) return Exit::not_reached;
-  if (!o.shape.empty()) write_file(o.shape, to_csv(solution));
-  return Exit::done;
+  remarks.print();
+  if (solution.converged) return Exit::done;
+  print_history(solution);
+  return Exit::not_reached;
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include "commands/command.h"
 #include "commands/options.h"
 #include "sweep/sweep.h"
+#include "text/remarks.h"
 
 namespace railstep {
 namespace {
@@ -27,14 +28,15 @@ int jobs_of(const SweepOptions& o) {
   return cores == 0 ? 1 : static_cast<int>(cores);
 }
 
-void print(const SweepResult& result, bool json) {
-  if (json)
-    return fmt::print("{}\n", nlohmann::ordered_json({{"runs", result.runs.size()},
-                                                      {"failed", result.failed.size()},
-                                                      {"table", result.table.string()}})
-                                  .dump(2));
-  fmt::print("runs    {}, of which {} were made now\nfailed  {}\ntable   {}\n", result.runs.size(),
-             result.made, result.failed.size(), result.table.string());
+void print(const SweepResult& result, const Remarks& remarks, bool json) {
+  if (!json)
+    return fmt::print("runs    {}, of which {} were made now\nfailed  {}\ntable   {}\n",
+                      result.runs.size(), result.made, result.failed.size(), result.table.string());
+  nlohmann::ordered_json told = {{"runs", result.runs.size()},
+                                 {"failed", result.failed.size()},
+                                 {"table", result.table.string()}};
+  remarks.add_to(told);
+  print_json(told);
 }
 
 Exit run(const SweepOptions& o) {
@@ -42,14 +44,15 @@ Exit run(const SweepOptions& o) {
   const Grid grid(o.overrides, o.vary);
   Sweep sweep({.scene = o.scene, .out = o.out, .grid = grid, .from = o.from, .jobs = jobs_of(o)});
   const SweepResult result = o.merge ? sweep.merge() : sweep.run(shard);
-  print(result, o.json);
-  if (result.failed.empty()) return Exit::done;
-  fmt::print(stderr, "error: {}\n",
-             named(fmt::format("{} of {} runs failed, the first is run {} ({}): {}",
-                               result.failed.size(), result.runs.size(), result.failed.front(),
-                               grid.words(result.failed.front()), result.first_error),
-                   "E-SWEEP-16"));
-  return Exit::not_reached;
+  Remarks remarks;
+  if (!result.failed.empty())
+    remarks.error(
+        {"E-SWEEP-16", fmt::format("{} of {} runs failed, the first is run {} ({}): {}",
+                                   result.failed.size(), result.runs.size(), result.failed.front(),
+                                   grid.words(result.failed.front()), result.first_error)});
+  print(result, remarks, o.json);
+  remarks.print();
+  return remarks.has_errors() ? Exit::not_reached : Exit::done;
 }
 
 }  // namespace

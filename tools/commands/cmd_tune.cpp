@@ -12,6 +12,7 @@
 #include "commands/options.h"
 #include "study/tune.h"
 #include "text/files.h"
+#include "text/remarks.h"
 #include "text/write.h"
 
 namespace railstep {
@@ -85,6 +86,19 @@ void print_row(const SettingRow& row) {
       row.errors.judged, row.parts.step, row.parts.condensation, row.parts.mesh);
 }
 
+/// The choice and where it is written, or the best that was found.
+void print_choice(const TuneResult& result, const std::filesystem::path& scene) {
+  if (result.choice) {
+    print_row(result.choice->row);
+    for (const Verification& own : result.choice->verified)
+      fmt::print("  {}: {:.2e}\n", own.what, own.error);
+    fmt::print("  written to {}\n", scene.string());
+  } else if (result.best) {
+    fmt::print("the best found:\n");
+    print_row(*result.best);
+  }
+}
+
 Exit run(const TuneOptions& o) {
   announce_output("--out", place_of(o));
   TuneResult result;
@@ -93,22 +107,17 @@ Exit run(const TuneOptions& o) {
     result = tune(o.request, [&doing](const std::string& what) { doing(what); });
   }
   if (result.choice) write_file(place_of(o), scene_text(o, result));
-  if (o.json) fmt::print("{}\n", to_json(result, place_of(o)).dump(2));
-  if (result.choice) {
-    if (o.json) return Exit::done;
-    print_row(result.choice->row);
-    for (const Verification& own : result.choice->verified)
-      fmt::print("  {}: {:.2e}\n", own.what, own.error);
-    fmt::print("  written to {}\n", place_of(o).string());
-    return Exit::done;
-  }
-  if (!o.json && result.best) {
-    fmt::print("the best found:\n");
-    print_row(*result.best);
-  }
-  fmt::print(stderr, "error: {}\n",
-             named("no setting reaches what is asked; the limit is " + result.binds, "E-STUDY-15"));
-  return Exit::not_reached;
+  Remarks remarks;
+  if (!result.choice)
+    remarks.error({"E-STUDY-15", "no setting reaches what is asked; the limit is " + result.binds});
+  nlohmann::ordered_json told = to_json(result, place_of(o));
+  remarks.add_to(told);
+  if (o.json)
+    print_json(told);
+  else
+    print_choice(result, place_of(o));
+  remarks.print();
+  return remarks.has_errors() ? Exit::not_reached : Exit::done;
 }
 
 }  // namespace

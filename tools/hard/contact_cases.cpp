@@ -8,7 +8,7 @@
 namespace railstep {
 namespace {
 
-/// Steps of 50 us or less are wanted to 1 %, those of 10 us to what a case says.
+/// Steps of 50 us or less must be right to 1 %, those of 10 us to the bound that a case states.
 bool coarse(double dt) { return dt > 2e-5; }
 
 // H4 -------------------------------------------------------------------------------------------

@@ -17,8 +17,8 @@ inline constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 /// A scene of the suite, run from its start to its end, and the trace of it.
 class HardRun {
  public:
-  /// @param overrides  as of `railstep run --set` Throws InputError, and for a name that is not a
-  /// column of the trace too.
+  /// @param overrides  as of `railstep run --set`
+  /// Throws InputError, also for a name that is not a column of the trace.
   explicit HardRun(const std::filesystem::path& scene,
                    const std::vector<std::string>& overrides = {}, const FrameInputs& inputs = {});
 

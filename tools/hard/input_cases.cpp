@@ -124,7 +124,7 @@ std::vector<HardCase> input_cases() {
        "that.",
        bad_input},
       {"H48", "h48_flooded_inputs", "Inputs of NaN and 1e308 for 1000 frames",
-       "What is wrong for long must neither be applied nor leave anything behind.",
+       "A lasting wrong input must neither be applied nor leave anything behind.",
        "An invariant: the bits of a run that is given what may be applied, the last good value or "
        "the limit; after that the motion fades to that of no input.",
        flooded}};

@@ -335,7 +335,7 @@ std::vector<HardCase> joint_cases() {
        "Upright, its arms lie on each other, and the slider could stay where it is.",
        "R8 of the reference solutions, to 1e-8.", slider_crank},
       {"H22", "h22_long_pendulum", "A pendulum over 1e6 steps",
-       "What a joint opens by in a step must not add up.",
+       "The openings of a joint in single steps must not add up.",
        "An invariant: 1e-12 m by the augmented Lagrangian, no trend by Baumgarte's.",
        long_pendulum},
       {"H44", "h44_mass_ratio", "A gram and a tonne on one joint",

@@ -291,7 +291,7 @@ std::vector<HardCase> model_cases() {
        "be linear: a bay adds what it adds from 1 250 to 2 500 bays.",
        long_track},
       {"H35", "h35_snapshot", "A run that is cut in two at a blow",
-       "What a step remembers beside the state (where a search began, say) is lost there.",
+       "Data that a step keeps beside the state (where a search began, say) are lost there.",
        "An invariant: state and scratch of a model are overwritten by NaN, restored, and go on "
        "with the same bits.",
        snapshots},
@@ -300,8 +300,8 @@ std::vector<HardCase> model_cases() {
        "state does not fit another model.",
        "An invariant: refused by the sum.", changed_model},
       {"H47", "h47_model_file", "1e5 steps from the model file, restored in the middle",
-       "What is written must be all of the model, to the bit.",
-       "An invariant: the bits of the scene.", model_file}};
+       "The file must hold all of the model, to the bit.", "An invariant: the bits of the scene.",
+       model_file}};
 }
 
 }  // namespace railstep

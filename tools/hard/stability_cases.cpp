@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "hard/hard_run.h"
-#include "hard/stability.h"
+#include "hard/step_stability.h"
 
 namespace railstep {
 namespace {

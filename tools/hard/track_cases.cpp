@@ -26,7 +26,7 @@ double under(const std::filesystem::path& scene, double x, int elements) {
       .first(kAxle);
 }
 
-/// The same by exact Timoshenko beams, which want a node under the load.
+/// The same by exact Timoshenko beams, which need a node under the load.
 double exact_under(const std::filesystem::path& scene, double x) {
   const StaticSolution found = solve_static(
       read_scene(scene, {fmt::format("load[0].start_m={}", x), "load[0].speed_m_per_s=0.0",
@@ -261,10 +261,10 @@ std::vector<HardCase> track_cases() {
        "Galerkin solution of the same beam, to 5e-4; the peak's height depends on the length.",
        many_modes},
       {"H29", "h29_a_million_bays", "A load over a million bays",
-       "What each bay adds by rounding or by the bays' shift grows.",
+       "The error that each bay adds by rounding or by the bays' shift grows.",
        "No reference: each bay is as the one before.", a_million_bays},
       {"H30", "h30_few_modes", "Few modes under a bogie in contact",
-       "What condensation leaves out comes back through the contact: spillover.",
+       "Modes that condensation leaves out come back through the contact: spillover.",
        "No reference: eigenvalues of the coupled step.", few_modes}};
 }
 

@@ -143,7 +143,7 @@ const double* SharedExchange::inputs(std::int64_t frame) noexcept {
     ++counts_.torn;
     return nullptr;
   }
-  if (lost()) return nullptr;  // behind the reading: zeros are no inputs
+  if (lost()) return nullptr;  // after the reading: zeros are not inputs
   ++counts_.fresh;
   const auto meant = static_cast<std::int64_t>(in_[1]);
   if (meant >= 0 && meant < frame) ++counts_.late;

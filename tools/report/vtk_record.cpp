@@ -162,7 +162,7 @@ VtkMesh VtkRecord::mesh() const {
   const double foot_z = (*std::min_element(outline_[0].begin(), outline_[0].end(), lowest))[1];
   for (int seat = 0; seat <= track.bays; ++seat)
     if (track.seat(seat).sleeper) add_sleeper(track, motion, seat, foot_z, mesh);
-  for (ContactId wheel = 0; wheel < tread_count(model); ++wheel) add_wheel(run_, wheel, mesh);
+  for (const ContactId wheel : treads(model)) add_wheel(run_, wheel, mesh);
   for (std::size_t v = 0; v < vehicles_.size(); ++v)
     add_vehicle(run_, static_cast<int>(v), vehicles_[v], mesh);
   return mesh;

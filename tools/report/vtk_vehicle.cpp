@@ -92,8 +92,9 @@ DrawnVehicle drawn_vehicle(const VehicleScene& scene) {
 void add_vehicle(const Simulation& run, int vehicle, const DrawnVehicle& drawn, VtkMesh& mesh) {
   const Vehicle& what = drawn.what;
   const SuspendedModel& model = run.model().vehicle[vehicle];
-  ContactId first = tread_count(run.model());
-  while (run.model().contact[first].bodies != vehicle) ++first;
+  std::int32_t wheel = 0;
+  while (run.model().contact[vehicle_contact(run.model(), wheel)].bodies != vehicle) ++wheel;
+  const ContactId first = vehicle_contact(run.model(), wheel);
   const double* force = run.state.contact_force + first;
   const Standing at = stand(run, model, run.model().contact[first].rail, drawn);
   for (const Vehicle::Wheel& own : what.wheels) add_wheel(at, own, *force++, mesh);

@@ -84,8 +84,7 @@ double lowest(const Model& model, const Outputs& outputs) {
   double least = 0.;
   for (std::int32_t i = 0; i < model.loads; ++i)
     least = std::min(least, outputs.load_deflection[i]);
-  for (std::int32_t i = 0; i < wheel_count(model); ++i)
-    least = std::min(least, outputs.contact_rail_z[i]);
+  for (const ContactId i : wheels(model)) least = std::min(least, outputs.contact_rail_z[i]);
   for (std::int32_t i = 0; i < model.external_wheels; ++i)
     least = std::min(least, outputs.external_displacement[i][2]);
   return least;
@@ -203,17 +202,22 @@ std::string unknown_place(const Simulation& run, std::int32_t unknown) {
   return place_in_system(system, names, unknown - system.first);
 }
 
-std::string nonfinite_sentence(const Simulation& run, std::int32_t first_bad_unknown) {
+Message nonfinite_error(const Simulation& run, std::int32_t first_bad_unknown) {
   const std::int32_t at = first_bad_unknown;
   const bool of_track = run.model().form == Form::banded && at < run.model().line_unknowns;
   const bool itself = of_track || !is_moderate(run.state.u[at]) || !is_moderate(run.state.v[at]);
-  return fmt::format(
-      "nonfinite_state: at step {}, t = {:.9g} s, {}unknown {} of the state ({}){} is not finite, "
-      "or beyond {}",
-      run.state.steps, static_cast<double>(run.state.steps) * run.model().scheme.dt,
-      itself ? "" : "what follows from ", at, unknown_place(run, at),
-      itself ? "" : ", a gap, an orientation or a contact's or joint's force,",
-      of_track ? "1024 m or rad" : "1.6e60");
+  return {"E-RUN-16",
+          fmt::format(
+              "nonfinite_state: at step {}, t = {:.9g} s, {}unknown {} of the state ({}){} is not "
+              "finite, or beyond {}; expected a shorter step.dt_s, or smaller forces",
+              run.state.steps, static_cast<double>(run.state.steps) * run.model().scheme.dt,
+              itself ? "" : "what follows from ", at, unknown_place(run, at),
+              itself ? "" : ", a gap, an orientation or a contact's or joint's force,",
+              of_track ? "1024 m or rad" : "1.6e60")};
+}
+
+std::string nonfinite_sentence(const Simulation& run, std::int32_t first_bad_unknown) {
+  return nonfinite_error(run, first_bad_unknown).line();
 }
 
 double quantile(std::vector<double> values, double q) {

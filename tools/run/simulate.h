@@ -9,6 +9,7 @@
 
 #include "run/inputs.h"
 #include "run/simulation.h"
+#include "text/message.h"
 
 namespace railstep {
 
@@ -60,6 +61,8 @@ std::vector<std::string> status_names(Status status);
 std::string status_sentence(const std::string& name, const RunRecord& record);
 /// Says where and when a run stopped being finite, by Outputs::first_bad_unknown:
 /// "nonfinite_state: at step ...".
+Message nonfinite_error(const Simulation& run, std::int32_t first_bad_unknown);
+/// The same in one line, with its id.
 std::string nonfinite_sentence(const Simulation& run, std::int32_t first_bad_unknown);
 /// The place of an unknown of the state, in words.
 std::string unknown_place(const Simulation& run, std::int32_t unknown);

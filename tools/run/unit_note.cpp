@@ -46,8 +46,4 @@ std::optional<Message> lopsided_note(const Scene& scene) {
   return std::nullopt;
 }
 
-void print_note(const std::optional<Message>& note) {
-  if (note) fmt::print(stderr, "note: {}\n", note->line());
-}
-
 }  // namespace railstep

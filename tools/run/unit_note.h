@@ -17,7 +17,4 @@ std::optional<Message> constants_note(const Scene& scene);
 /// nothing where it is not.
 std::optional<Message> lopsided_note(const Scene& scene);
 
-/// Prints a note on stderr, where there is one.
-void print_note(const std::optional<Message>& note);
-
 }  // namespace railstep

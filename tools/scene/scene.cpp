@@ -3,7 +3,6 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 #include "scene/scene_read.h"
@@ -218,17 +217,6 @@ std::optional<Sleeper> read_sleeper(const Table& root, const Scene& scene) {
   return s;
 }
 
-/// Number of steps `dt` in `time`, a whole number within 1e-9 for the rounding of decimal numbers.
-std::int64_t whole_steps(const Table& t, std::string_view key, double time, double dt) {
-  const double steps = std::round(time / dt);
-  if (!(steps >= 1.0) || std::fabs(time / dt - steps) > 1e-9 * steps)
-    t.refuse(key, "E-STEP-06",
-             fmt::format("{} = {:.15g} is not a whole number of steps of dt_s = {:.15g}; expected "
-                         "a multiple of dt_s",
-                         key, time, dt));
-  return static_cast<std::int64_t>(steps);
-}
-
 NewtonOptions read_statics(const Table& root) {
   NewtonOptions s;
   const std::optional<Table> t = root.table_if("static");
@@ -247,44 +235,6 @@ ReferenceLine read_reference_line(const Table& t) {
   return kLines[t.choice("reference_line", {"centroid", "mid-height", "foot", "head"}, 0)];
 }
 
-StepScene read_times(const Table& t) {
-  StepScene s{};
-  s.dt = t.number("dt_s", between(1e-7, 0.1));
-  const double duration = t.number("duration_s", above_upto(0.0, 1e7));
-  if (s.dt > duration)
-    t.refuse("dt_s", "E-STEP-07",
-             fmt::format("dt_s = {:.15g} is longer than duration_s = {:.15g}; expected at most "
-                         "the duration",
-                         s.dt, duration));
-  const double frame = t.number("frame_s", above_upto(0.0, duration), s.dt);
-  s.steps_per_frame = whole_steps(t, "frame_s", frame, s.dt);
-  s.steps = whole_steps(t, "duration_s", duration, s.dt);
-  return s;
-}
-
-StepScene read_track_step(const Table& t, const TrackScene& track) {
-  StepScene s = read_times(t);
-  read_scheme(t, 0.6, false, s);
-  constexpr Start kStarts[] = {Start::equilibrium, Start::released, Start::moving};
-  s.start = kStarts[t.choice("start", {"equilibrium", "released", "moving"}, 0)];
-  if (s.start == Start::moving && !track.endless)
-    t.refuse("start", "E-STEP-08",
-             "start = \"moving\" needs a track without end; expected track.length = "
-             "\"endless\", or another start");
-  return s;
-}
-
-void check_frames(const Table& t, const StepScene& s) {
-  if (s.steps % s.steps_per_frame != 0)
-    t.refuse("duration_s", "E-STEP-09",
-             "duration_s is not a multiple of frame_s, but a run is written in whole "
-             "frames; expected a multiple of frame_s");
-  if (s.steps_per_frame > std::numeric_limits<int>::max())
-    t.refuse("frame_s", "E-STEP-10",
-             fmt::format("a frame of {} steps is too long; expected at most {} steps",
-                         s.steps_per_frame, std::numeric_limits<int>::max()));
-}
-
 Table open_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
   Table root = read_toml(file, overrides);
   const std::int64_t schema = root.integer("schema", 1, std::numeric_limits<std::int64_t>::max());
@@ -294,76 +244,129 @@ Table open_scene(const std::filesystem::path& file, const std::vector<std::strin
   return root;
 }
 
-void read_rails(const Table& root, Scene& scene) {
-  scene.file = root.file();
-  scene.sum = root.sum();
-  scene.track = read_track(root.table("track"));
-  if (scene.track.rigid) {
-    scene.rail = read_rigid_rail(root);
-    root.attempt([&] { read_gauge(root.table("track"), scene); });
-    return;
-  }
-  root.attempt([&] { check_size(root.table("track"), scene.track); });
-  root.stop_if_refused();
-  scene.track.bays = std::min(scene.track.bays, kMostElements);  // seats are counted below
+namespace {
+
+/// The rails' sections and all that is checked against them.
+void read_sections(const Table& root, Scene& scene, Intact& intact) {
   const Table rail = root.table("rail");
-  scene.rail = read_rail(rail);
-  if (const std::optional<Table> right = rail.table_if("right")) {
-    if (scene.track.rails == 1)
+  intact.sections = root.attempt({"rail"}, [&] {
+    scene.rail = read_rail(rail);
+    const std::optional<Table> right = rail.table_if("right");
+    if (right && scene.track.rails == 1)
       right->refuse("", "E-SCENE-28",
                     "the track has one rail, the left one; expected track.rails = 2 beside "
                     "[rail.right]");
-    scene.right_rail = read_right_rail(*right, scene.rail);
-  }
-  root.attempt([&] { read_gauge(root.table("track"), scene); });
-  root.attempt([&] { check_cant(rail, scene); });
-  root.attempt([&] { check_held(rail, scene); });
-  root.attempt([&] { read_joints(root, rail, scene); });
-  scene.support = read_support(root, scene);
-  root.attempt([&] { scene.sleeper = read_sleeper(root, scene); });
-  root.attempt([&] { scene.seat_changes = read_seat_changes(root, scene); });
-  if (!scene.track.endless) return;
-  if (scene.support && scene.support->length > 0.)
-    root.table("support").refuse(
-        "length_m", "E-SUPPORT-20",
-        "the pads of a track without end are points; expected length_m = 0");
-  if (!scene.seat_changes.empty())
-    root.table("track").refuse("length", "E-SUPPORT-21",
-                               "the seats of a track without end are alike; expected no "
-                               "[[support_change]]");
+    if (right) scene.right_rail = read_right_rail(*right, scene.rail);
+  });
+  // The readers go on behind a bad value to find more of them, but not on rails without numbers.
+  if (!intact.sections && root.is_tainted()) root.end_part();
+  intact.spacing = root.attempt(
+      {"track"}, [&] { read_gauge(root.table("track"), scene); }, intact.sections);
+  root.attempt(
+      {}, [&] { check_cant(rail, scene); }, intact.sections);
+  root.attempt(
+      {}, [&] { check_held(rail, scene); }, intact.sections);
+  root.attempt(
+      {"rail_joint"}, [&] { read_joints(root, rail, scene); }, intact.sections);
 }
 
-void read_traffic(const Table& root, Scene& scene) {
-  scene.condense = read_condense(root, scene.track);
-  if (scene.step) read_contact(root, scene);
-  root.attempt([&] { scene.stops = read_stops(root, scene); });
-  root.attempt([&] { scene.loads = read_loads(root, scene); });
-  root.attempt([&] { scene.wheelsets = read_wheelsets(root, scene, scene.inputs); });
-  root.attempt(
-      [&] { scene.vehicles = read_vehicles(root, scene, scene.inputs, scene.rail_vehicles); });
-  root.attempt([&] { scene.external_wheels = read_external_wheels(root, scene); });
-  root.attempt([&] { scene.irregularity = read_irregularity(root, scene); });
-  root.stop_if_refused();  // the readers below ask what runs on the track
-  root.attempt([&] { scene.defects = read_defects(root, scene); });
+/// [support] and what stands under it.
+void read_seats(const Table& root, Scene& scene, Intact& intact) {
+  scene.support = read_support(root, scene);
+  intact.seats = root.attempt({"sleeper", "ballast", "under_sleeper_pad"}, [&] {
+    scene.sleeper = read_sleeper(root, scene);
+  }) || root.is_tainted();
+  root.apart(
+      {"support_change"}, [&] { scene.seat_changes = read_seat_changes(root, scene); },
+      intact.seats);
+  if (scene.track.endless && scene.support && scene.support->length > 0.)
+    root.attempt({}, [&] {
+      root.table("support").refuse(
+          "length_m", "E-SUPPORT-20",
+          "the pads of a track without end are points; expected length_m = 0");
+    });
+  if (scene.track.endless && !scene.seat_changes.empty())
+    root.attempt({}, [&] {
+      root.table("track").refuse("length", "E-SUPPORT-21",
+                                 "the seats of a track without end are alike; expected no "
+                                 "[[support_change]]");
+    });
+}
+
+/// Refuses columns for the supports of a track without end, where none has a fixed place.
+void check_output(const Table& root, const Scene& scene) {
+  if (scene.trace_supports && scene.track.endless)
+    root.table("output").refuse(
+        "supports", "E-SCENE-31",
+        "the supports of a track without end pass under its traffic; expected "
+        "[[sensor]] tables instead, as sensors follow the traffic bay by bay");
+}
+
+}  // namespace
+
+Intact read_rails(const Table& root, Scene& scene) {
+  Intact intact;
+  scene.file = root.file();
+  scene.sum = root.sum();
+  const Table track = root.table("track");
+  scene.track = read_track(track);
+  if (scene.track.rigid) {
+    scene.rail = read_rigid_rail(root);
+    intact.spacing = root.attempt({"track"}, [&] { read_gauge(track, scene); });
+    return intact;
+  }
+  const bool fits = root.attempt({}, [&] { check_size(track, scene.track); });
+  if (!fits && !root.is_tainted()) root.end_part();              // all places lie on its length
+  scene.track.bays = std::min(scene.track.bays, kMostElements);  // seats are counted below
+  read_sections(root, scene, intact);
+  read_seats(root, scene, intact);
+  return intact;
+}
+
+void read_traffic(const Table& root, Scene& scene, Intact& intact) {
+  intact.condensed =
+      root.attempt({"condense"}, [&] { scene.condense = read_condense(root, scene.track); });
+  if (scene.step) {
+    root.attempt({}, [&] { check_moving(root, scene); });
+    root.attempt(
+        {}, [&] { check_contact(root, scene); }, intact.condensed);
+  }
+  root.apart({"stop"}, [&] { scene.stops = read_stops(root, scene); });
+  root.apart({"load"}, [&] { scene.loads = read_loads(root, scene); });
+  const bool wheelsets = root.attempt(
+      {"wheelset"}, [&] { scene.wheelsets = read_wheelsets(root, scene, scene.inputs); },
+      intact.sections);
+  const bool vehicles = root.attempt(
+      {"vehicle", "contact", "coupler"},
+      [&] { scene.vehicles = read_vehicles(root, scene, scene.inputs, scene.rail_vehicles); },
+      intact.sections);
+  const bool external = root.attempt(
+      {"external_wheel"}, [&] { scene.external_wheels = read_external_wheels(root, scene); });
+  intact.traffic = (wheelsets && vehicles && external) || root.is_tainted();
+  root.apart(
+      {"irregularity"}, [&] { scene.irregularity = read_irregularity(root, scene); },
+      intact.traffic);
+  root.apart(
+      {"defect"}, [&] { scene.defects = read_defects(root, scene); }, intact.traffic);
   const std::optional<Table> output = root.table_if("output");
   scene.trace_supports = output && output->boolean("supports", false);
 }
 
 Scene read_track_scene(const Table& root) {
   Scene scene;
-  read_rails(root, scene);
-  root.attempt([&] {
+  // No other table is needed to read the step, so that its errors stand beside all others.
+  const bool is_stepped = root.apart({"step"}, [&] {
     if (const std::optional<Table> step = root.table_if("step"))
-      scene.step = read_track_step(*step, scene.track);
+      scene.step = read_track_step(*step);
   });
+  if (!is_stepped) scene.step.reset();
+  Intact intact = read_rails(root, scene);
   scene.statics = read_statics(root);
-  read_traffic(root, scene);
-  root.attempt([&] { scene.sensors = read_sensors(root, scene); });
-  if (scene.trace_supports && scene.track.endless)
-    root.table("output").refuse(
-        "supports", "E-SCENE-31",
-        "the supports of a track without end pass under its traffic; expected "
-        "[[sensor]] tables instead, as sensors follow the traffic bay by bay");
+  read_traffic(root, scene, intact);
+  root.apart(
+      {"sensor"}, [&] { scene.sensors = read_sensors(root, scene); },
+      intact.seats && intact.traffic);
+  root.attempt({}, [&] { check_output(root, scene); });
   NameBook names;
   claim_names(root, scene, names);
   return scene;
@@ -377,7 +380,7 @@ Scene read_scene(const std::filesystem::path& file, const std::vector<std::strin
         fmt::format("the key {} makes this a scene of bodies and beams, which only `run` and "
                     "`condense` take; expected a scene of a track alone",
                     key));
-  return root.whole(read_track_scene);
+  return root.whole(read_track_scene, kSceneKeys);
 }
 
 }  // namespace railstep

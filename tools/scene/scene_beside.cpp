@@ -6,7 +6,7 @@
 namespace railstep {
 namespace {
 
-StepScene read_step(const Table& t, const TrackScene& track) {
+StepScene read_step(const Table& t) {
   if (t.has("scheme") && t.string("scheme") == "energy-momentum")
     t.refuse("scheme", "E-BODY-06",
              "scheme = \"energy-momentum\" steps bodies and beams without a track; "
@@ -17,7 +17,7 @@ StepScene read_step(const Table& t, const TrackScene& track) {
              "scheme = \"tr-bdf2\" has two stages, which the step of bodies and beams "
              "does not have; expected \"generalised-alpha\", \"backward-euler\", "
              "\"newmark\" or \"hht\"");
-  const StepScene step = read_track_step(t, track);
+  const StepScene step = read_track_step(t);
   check_frames(t, step);
   return step;
 }
@@ -52,18 +52,23 @@ void check_system(const Table& root, const SystemScene& scene, const TrackScene&
 
 }  // namespace
 
-Scene read_track_beside(const Table& root, const SystemScene& scene, NameBook& names) {
+Scene read_track_beside(const Table& root, const SystemScene& scene, NameBook& names,
+                        Intact& intact) {
   if (root.has("static"))
-    root.refuse("static", "E-BODY-05",
-                "[static] belongs to `railstep static`, which takes a track alone; "
-                "expected a scene of a track and bodies without it");
+    root.attempt({"static"}, [&] {
+      root.refuse("static", "E-BODY-05",
+                  "[static] belongs to `railstep static`, which takes a track alone; "
+                  "expected a scene of a track and bodies without it");
+    });
   Scene track;
-  read_rails(root, track);
+  const bool is_stepped = root.apart({"step"}, [&] { track.step = read_step(root.table("step")); });
+  if (!is_stepped) track.step.reset();
+  intact = read_rails(root, track);
   check_model(root.table("track"), track.track);
   check_system(root, scene, track.track);
-  track.step = read_step(root.table("step"), track.track);
-  read_traffic(root, track);
-  read_residual_beside(root, track);
+  read_traffic(root, track, intact);
+  root.attempt(
+      {}, [&] { read_residual_beside(root, track); }, intact.condensed && intact.traffic);
   claim_names(root, track, names);
   return track;
 }

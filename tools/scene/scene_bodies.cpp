@@ -5,6 +5,7 @@
 #include <limits>
 #include <map>
 
+#include "offline/math/constants.h"
 #include "online/track/travel.h"
 #include "scene/scene_read.h"
 
@@ -196,7 +197,7 @@ WheelsetScene read_wheelset(const Table& t, const Scene& scene, std::vector<Inpu
   w.inertia_spin = t.number("inertia_spin_kg_m2", inertia);
   w.inertia_yaw = t.number("inertia_yaw_kg_m2", inertia);
   w.radius = t.number("radius_m", between(0.02, 3.0));
-  w.tread_half_width = t.number("tread_half_width_m", between(0.005, 0.3), 0.065);
+  w.tread_half_width = t.number("tread_half_width_m", between(0.005, 0.3), kTreadHalfWidth);
   w.may_leave_rail = t.boolean("may_leave_rail", false);
   w.start = t.number("start_m",
                      w.may_leave_rail ? between(-1e6, 1e6) : between(0.0, scene.track.length()));
@@ -298,34 +299,45 @@ void claim_in_space(const Table& t, const std::string& name, const Scene& scene,
     }
 }
 
+/// The tables of a list, one for each entry; none where an entry was refused.
+template <typename Entry>
+std::vector<Table> tables_of(const Table& root, const char* key, const std::vector<Entry>& read) {
+  std::vector<Table> all = root.tables(key);
+  if (all.size() != read.size()) all.clear();
+  return all;
+}
+
 }  // namespace
 
 void claim_names(const Table& root, const Scene& scene, NameBook& names) {
-  if (!root.is_faultless()) return;  // entries of a list may be missing
   NameBook wheelsets;  // a sensor may have the name of a wheelset, which has no columns of its own
-  const auto loads = root.tables("load"), bodies = root.tables("wheelset"),
-             sensors = root.tables("sensor"), stops = root.tables("stop");
-  for (std::size_t i = 0; i < loads.size(); ++i) names.claim(loads[i], "name", scene.loads[i].name);
+  const auto claim = [&root](const Table& t, std::string_view key, const std::string& name,
+                             NameBook& book) {
+    if (!name.empty()) root.attempt({}, [&] { book.claim(t, key, name); });  // empty: a bad value
+  };
+  const auto claim_all = [&](const char* key, const auto& read) {
+    const std::vector<Table> all = tables_of(root, key, read);
+    for (std::size_t i = 0; i < all.size(); ++i) claim(all[i], "name", read[i].name, names);
+  };
+  claim_all("load", scene.loads);
+  const std::vector<Table> bodies = tables_of(root, "wheelset", scene.wheelsets);
   for (std::size_t i = 0; i < bodies.size(); ++i) {
-    wheelsets.claim(bodies[i], "name", scene.wheelsets[i].name);
+    claim(bodies[i], "name", scene.wheelsets[i].name, wheelsets);
     for (const std::string& wheel : scene.wheelsets[i].wheels)
-      names.claim(bodies[i], "wheels", wheel);
+      claim(bodies[i], "wheels", wheel, names);
   }
-  const auto external = root.tables("external_wheel");
-  for (std::size_t i = 0; i < external.size(); ++i)
-    names.claim(external[i], "name", scene.external_wheels[i].name);
-  for (std::size_t i = 0; i < stops.size(); ++i) names.claim(stops[i], "name", scene.stops[i].name);
+  claim_all("external_wheel", scene.external_wheels);
+  claim_all("stop", scene.stops);
   // One table that stands on both rails makes two vehicles, whose names begin with its own.
   std::size_t vehicle = 0;
   for (const Table& t : root.tables("vehicle")) {
     const std::string name = t.string("name");
     while (vehicle < scene.vehicles.size() && scene.vehicles[vehicle].table == name)
-      names.claim(t, "name", scene.vehicles[vehicle++].name);
-    claim_in_space(t, name, scene, names);
+      claim(t, "name", scene.vehicles[vehicle++].name, names);
+    root.attempt({}, [&] { claim_in_space(t, name, scene, names); });
   }
-  for (const Table& t : root.tables("coupler")) names.claim(t, "name", t.string("name"));
-  for (std::size_t i = 0; i < scene.sensors.size(); ++i)
-    names.claim(sensors[i], "name", scene.sensors[i].name);
+  for (const Table& t : root.tables("coupler")) claim(t, "name", t.string("name"), names);
+  claim_all("sensor", scene.sensors);
 }
 
 }  // namespace railstep

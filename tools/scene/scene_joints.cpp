@@ -241,16 +241,16 @@ void read_force(const Table& t, SystemScene& scene) {
 }  // namespace
 
 void read_joints(const Table& root, SystemScene& scene, NameBook& names) {
-  for (const Table& t : root.tables("joint")) {
+  root.each("joint", [&](const Table& t) {
     scene.names.joints.push_back(names.claim(t));
     if (t.boolean("trace", false))
       scene.traced.joints.push_back(static_cast<int>(scene.system.joints.size()));
     scene.system.joints.push_back(read_joint(t, scene));
-  }
+  });
 }
 
 void read_springs(const Table& root, SystemScene& scene, NameBook& names) {
-  for (const Table& t : root.tables("spring")) {
+  root.each("spring", [&](const Table& t) {
     scene.names.springs.push_back(t.has("name") ? names.claim(t) : "");
     if (t.boolean("trace", false)) {
       if (!t.has("name"))
@@ -260,7 +260,7 @@ void read_springs(const Table& root, SystemScene& scene, NameBook& names) {
       scene.traced.springs.push_back(static_cast<int>(scene.system.springs.size()));
     }
     scene.system.springs.push_back(read_spring_damper(t, scene));
-  }
+  });
 }
 
 void read_forces(const Table& root, SystemScene& scene) {
@@ -268,11 +268,11 @@ void read_forces(const Table& root, SystemScene& scene) {
 }
 
 void read_system_sensors(const Table& root, SystemScene& scene, NameBook& names) {
-  for (const Table& t : root.tables("sensor")) {
+  root.each("sensor", [&](const Table& t) {
     const std::string name = names.claim(t), on = t.string("on");
     if (scene.track && (on == "rail" || on == "sleeper")) {
       scene.track->sensors.push_back(read_sensor(t, *scene.track));
-      continue;
+      return;
     }
     scene.names.sensors.push_back(name);
     SystemSensor sensor;
@@ -283,7 +283,7 @@ void read_system_sensors(const Table& root, SystemScene& scene, NameBook& names)
     else
       sensor.point = read_point(t, "position_m", sensor.on, scene);
     scene.system.sensors.push_back(sensor);
-  }
+  });
 }
 
 }  // namespace railstep

@@ -145,15 +145,15 @@ std::string claim_part(const Table& t, const SystemScene& scene, NameBook& names
 
 }  // namespace
 
-void read_bodies(const Table& root, SystemScene& scene, NameBook& names) {
-  for (const Table& t : root.tables("body")) {
+bool read_bodies(const Table& root, SystemScene& scene, NameBook& names) {
+  return root.each("body", [&](const Table& t) {
     scene.names.bodies.push_back(claim_part(t, scene, names));
     scene.system.bodies.push_back(read_body(t, scene.system.planar));
-  }
+  });
 }
 
-void read_beams(const Table& root, SystemScene& scene, NameBook& names) {
-  for (const Table& t : root.tables("beam")) {
+bool read_beams(const Table& root, SystemScene& scene, NameBook& names) {
+  return root.each("beam", [&](const Table& t) {
     scene.names.beams.push_back(claim_part(t, scene, names));
     scene.system.beams.push_back(read_beam(t, scene.system.planar));
     scene.bars.push_back({read_bar(t), read_reference_line(t)});
@@ -161,7 +161,7 @@ void read_beams(const Table& root, SystemScene& scene, NameBook& names) {
       t.refuse("constants", "E-BODY-22",
                "a beam that turns needs its section's shape, for moments of third and "
                "fourth degree; expected profile, section, rectangles or rectangle");
-  }
+  });
 }
 
 Part read_part(const Table& t, std::string_view key, const std::string& name,

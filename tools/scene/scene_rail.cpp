@@ -1,5 +1,6 @@
 #include <fmt/core.h>
 
+#include "offline/math/constants.h"
 #include "scene/scene_read.h"
 #include "section/section_file.h"
 
@@ -96,10 +97,10 @@ int read_section_points(const Table& t, const SectionSource& shape) {
 BarScene read_bar_of(const Table& bar, const Range& young) {
   BarScene r;
   r.shape = read_shape(bar);
-  r.young = bar.number("young_pa", young, 210e9);
+  r.young = bar.number("young_pa", young, kSteelYoung);
   // Beyond these bounds a material would create energy; at 0.5 it cannot be compressed.
-  r.poisson = bar.number("poisson", {-1.0, 0.5, false, false}, 0.3);
-  r.density = bar.number("density_kg_per_m3", between(1.0, 1e5), 7850.0);
+  r.poisson = bar.number("poisson", {-1.0, 0.5, false, false}, kSteelPoisson);
+  r.density = bar.number("density_kg_per_m3", between(1.0, 1e5), kSteelDensity);
   r.section_points = 0;
   if (const std::optional<Table> rule = bar.table_if("rule")) {
     r.rule = read_rule(*rule);
@@ -117,7 +118,7 @@ BarScene read_bar(const Table& bar) { return read_bar_of(bar, kBeamYoung); }
 RailScene read_rail(const Table& rail) {
   RailScene r;
   static_cast<BarScene&>(r) = read_bar_of(rail, kRailYoung);
-  r.crown_radius = rail.number("crown_radius_m", between(0.01, 10.0), 0.3);
+  r.crown_radius = rail.number("crown_radius_m", between(0.01, 10.0), kCrownRadius);
   r.axial_force = rail.number("axial_force_n", between(-1e10, 1e10), 0.0);
   r.temperature_rise = rail.number("temperature_rise_k", between(-300.0, 300.0), 0.0);
   r.expansion = rail.number("expansion_per_k", between(0.0, 1e-3), 1.15e-5);

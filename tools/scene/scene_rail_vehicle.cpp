@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "offline/contact/hertz.h"
+#include "offline/math/hertz_depth.h"
 #include "offline/runner/suspension.h"
 #include "scene/scene_read.h"
 #include "section/running_profile.h"
@@ -17,7 +18,7 @@ RollingPatch hertz_patch(const RollingContact& c, double radius, const BarScene&
   constexpr double kLoad = 1e5;  // N: the ellipse has the same shape under every load
   const HertzContact patch =
       hertz_contact(radius, c.crown_radius, steel.young, steel.poisson, kLoad);
-  const double root = std::sqrt(std::pow(kLoad / c.hertz, 2. / 3.));
+  const double root = std::sqrt(hertz_depth(kLoad, c.hertz));
   return {patch.half_along / root, patch.half_across / root,
           steel.young / (2. * (1. + steel.poisson)), 1. / 3.,
           kalker(patch.half_along / patch.half_across, steel.poisson)};
@@ -126,7 +127,7 @@ double relaxation_length(const RollingContact& c, double radius, double load,
       hertz_contact(radius, steel.crown_radius, steel.young, steel.poisson, load);
   const double shear = steel.young / (2. * (1. + steel.poisson));
   const RollingPatch& given = c.creep.patch;
-  const double along = given.growth == 0.
+  const double along = given.exponent == 0.
                            ? given.shear * given.half_length * given.half_width * given.kalker.c11
                            : shear * patch.half_along * patch.half_across *
                                  kalker(patch.half_along / patch.half_across, steel.poisson).c11;
@@ -228,12 +229,12 @@ RunnerStop read_brake(const Table& t, const Runner& runner, std::vector<InputSce
   brake.a = body_of("wheelset", t.string("wheelset"));
   const RunnerBody& wheelset = runner.bodies[static_cast<std::size_t>(brake.a)];
   if (!wheelset.is_wheelset())
-    t.refuse("wheelset", "E-VEHICLE-30",
+    t.refuse("wheelset", "E-VEHICLE-32",
              fmt::format("wheelset = \"{}\" has no wheels; expected a wheelset", wheelset.name));
   const std::string on = t.string("on");
   brake.b = on == "ground" ? kGround : body_of("on", on);
   if (brake.b == brake.a)
-    t.refuse("on", "E-VEHICLE-30",
+    t.refuse("on", "E-VEHICLE-33",
              "a brake acts between a wheelset and itself; expected another body, or \"ground\"");
   brake.axis = index_of(BodyMotion::pitch);
   brake.law.stiffness = t.number("stiffness_n_m_per_rad", above_upto(0.0, 1e12), 1e7);

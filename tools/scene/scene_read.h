@@ -14,9 +14,25 @@ namespace railstep {
 
 /// Parses a scene and checks its schema. Throws InputError.
 Table open_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides);
+/// All keys that a scene may have at its root, of either kind of scene.
+inline const Table::Names kSceneKeys = {
+    "schema",         "track",        "rail",     "rail_joint", "support",
+    "sleeper",        "ballast",      "stop",     "load",       "under_sleeper_pad",
+    "support_change", "wheelset",     "vehicle",  "contact",    "coupler",
+    "external_wheel", "irregularity", "defect",   "sensor",     "output",
+    "step",           "static",       "condense", "system",     "body",
+    "beam",           "joint",        "joints",   "spring",     "force"};
 Scene read_track_scene(const Table& root);
+/// The parts of a track's scene that were read without a refusal. A check that builds on another
+/// part is kept back.
+struct Intact {
+  bool sections = true, spacing = true;  // of the rails
+  bool seats = true;                     // sleepers and what is under them
+  bool condensed = true;                 // [condense]
+  bool traffic = true;                   // wheelsets, vehicles and external wheels
+};
 /// [track], [rail], [support], [sleeper] and [ballast].
-void read_rails(const Table& root, Scene& scene);
+Intact read_rails(const Table& root, Scene& scene);
 /// The first key of bodies, beams and joints in a scene; null in one without.
 const char* key_of_system(const Table& root);
 
@@ -44,14 +60,16 @@ CondenseScene read_condense(const Table& root, const TrackScene& track);
 void read_residual_beside(const Table& root, Scene& scene);
 /// dt, frame and duration of [step]. The callers read the scheme and the start.
 StepScene read_times(const Table& step);
-/// [step] of a scene with a track.
-StepScene read_track_step(const Table& step, const TrackScene& track);
+/// [step] of a scene with a track. check_moving() and check_contact() compare it with the rest.
+StepScene read_track_step(const Table& step);
 /// The scheme of [step] and its numbers.
 /// @param rho_inf    its default
 /// @param of_bodies  whether the schemes are those of bodies and beams
 void read_scheme(const Table& step, double rho_inf, bool of_bodies, StepScene& read);
-/// Reads how contact forces follow the penetration, for a scene whose [condense] is read.
-void read_contact(const Table& root, Scene& scene);
+/// Refuses a moving start on a track with ends, for a scene with a step.
+void check_moving(const Table& root, const Scene& scene);
+/// Refuses contact forces that [condense] does not go with, for a scene with a step.
+void check_contact(const Table& root, const Scene& scene);
 /// Refuses a run that is not a whole number of frames.
 void check_frames(const Table& step, const StepScene& read);
 /// Where a track's nodes lie in its section: key reference_line, the centroid by default.
@@ -130,9 +148,9 @@ class NameBook {
   std::map<std::string, std::string> owner_;  // name -> the table that gave it first
 };
 
-/// Claims all names of a track's trace. Throws InputError where a name stands twice.
+/// Claims all names of a track's trace. Refuses names that stand twice.
 void claim_names(const Table& root, const Scene& scene, NameBook& names);
 /// Reads all that runs on a track, and its irregularities. Its rails and its step must be read.
-void read_traffic(const Table& root, Scene& scene);
+void read_traffic(const Table& root, Scene& scene, Intact& intact);
 
 }  // namespace railstep

@@ -1,5 +1,6 @@
 #include <cmath>
 
+#include "offline/math/constants.h"
 #include "scene/scene_read.h"
 
 namespace railstep {
@@ -25,10 +26,10 @@ RailScene read_rigid_rail(const Table& root) {
   if (const std::optional<Table> rail = root.table_if("rail")) return read_rail(*rail);
   RailScene upright{};
   upright.shape = RectangleSizes{.15, .0315, .0165, .0895, .072, .051};
-  upright.young = 210e9;
-  upright.poisson = .3;
-  upright.density = 7850.;
-  upright.crown_radius = .3;
+  upright.young = kSteelYoung;
+  upright.poisson = kSteelPoisson;
+  upright.density = kSteelDensity;
+  upright.crown_radius = kCrownRadius;
   return upright;
 }
 

@@ -101,26 +101,30 @@ void drop_inputs_of_track(SystemScene& scene) {
 SystemScene read_system_scene(const Table& root) {
   SystemScene scene;
   NameBook names;
+  Intact intact;
   scene.file = root.file();
   scene.sum = root.sum();
   if (!root.has("track")) refuse_track_keys(root);
-  read_whole(root, scene.system);
-  scene.options = read_hold(root);
+  const bool known = root.attempt({"system"}, [&] { read_whole(root, scene.system); });
+  root.attempt({"joints"}, [&] { scene.options = read_hold(root); });
   if (root.has("track")) {
-    scene.track = read_track_beside(root, scene, names);
-    scene.step = *scene.track->step;
+    scene.track = read_track_beside(root, scene, names, intact);
+    if (scene.track->step) scene.step = *scene.track->step;
     scene.inputs = scene.track->inputs;  // read_forces() counts on from these
   } else {
-    scene.step = read_system_step(root.table("step"));
+    root.apart({"step"}, [&] { scene.step = read_system_step(root.table("step")); });
   }
-  read_bodies(root, scene, names);
-  read_beams(root, scene, names);
+  if (!known) root.end_part();  // [system] says whether all lies in a plane
+  const bool bodies = read_bodies(root, scene, names), beams = read_beams(root, scene, names);
+  // Joints, springs, forces and sensors name parts and points of them.
+  if (!bodies || !beams || !intact.sections || !intact.spacing) root.end_part();
   check_count(root, scene.system);
   read_joints(root, scene, names);
   read_springs(root, scene, names);
   read_forces(root, scene);
   drop_inputs_of_track(scene);
-  read_system_sensors(root, scene, names);
+  root.attempt(
+      {"sensor"}, [&] { read_system_sensors(root, scene, names); }, intact.seats && intact.traffic);
   return scene;
 }
 
@@ -135,8 +139,8 @@ const char* key_of_system(const Table& root) {
 AnyScene read_any_scene(const std::filesystem::path& file,
                         const std::vector<std::string>& overrides) {
   const Table root = open_scene(file, overrides);
-  if (key_of_system(root)) return root.whole(read_system_scene);
-  return root.whole(read_track_scene);
+  if (key_of_system(root)) return root.whole(read_system_scene, kSceneKeys);
+  return root.whole(read_track_scene, kSceneKeys);
 }
 
 }  // namespace railstep

@@ -11,10 +11,13 @@ namespace railstep {
 
 /// The track of a scene that has a system too, with all that runs on it and its step. Throws
 /// InputError for what is not stepped beside bodies.
-Scene read_track_beside(const Table& root, const SystemScene& scene, NameBook& names);
+/// @param intact  out: the parts that were read without a refusal
+Scene read_track_beside(const Table& root, const SystemScene& scene, NameBook& names,
+                        Intact& intact);
 
-void read_bodies(const Table& root, SystemScene& scene, NameBook& names);
-void read_beams(const Table& root, SystemScene& scene, NameBook& names);
+/// @returns whether none was refused
+bool read_bodies(const Table& root, SystemScene& scene, NameBook& names);
+bool read_beams(const Table& root, SystemScene& scene, NameBook& names);
 
 /// The use of a name, which says what it may name.
 enum class Naming {

@@ -214,13 +214,15 @@ std::vector<VehicleScene> read_vehicles(const Table& root, const Scene& scene,
                                         std::vector<InputScene>& inputs,
                                         std::vector<RailVehicleScene>& rail_vehicles) {
   std::vector<VehicleScene> vehicles;
-  root.each("vehicle", [&](const Table& t) {
+  const bool known = root.each("vehicle", [&](const Table& t) {
     if (is_rail_vehicle(t))
       rail_vehicles.push_back(read_rail_vehicle(root, t, scene, inputs));
     else
       read_vehicle(t, scene, vehicles, inputs);
   });
-  read_couplers(root, rail_vehicles);
+  if (!known) root.leave_open("contact");  // a rail vehicle reads it
+  root.attempt(
+      {"coupler"}, [&] { read_couplers(root, rail_vehicles); }, known || root.is_tainted());
   return vehicles;
 }
 

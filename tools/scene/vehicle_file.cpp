@@ -247,14 +247,17 @@ void read_runner_element(const Table& t, const BogiePlace& place, Runner& runner
 }
 
 void read_runner_bodies(const Table& t, const BogiePlace& place, Runner& runner) {
-  t.each("body",
-         [&](const Table& body) { runner.bodies.push_back(read_runner_body(body, place)); });
-  t.each("wheelset",
-         [&](const Table& set) { runner.bodies.push_back(read_runner_wheelset(set, place)); });
+  const bool bodies = t.each(
+      "body", [&](const Table& body) { runner.bodies.push_back(read_runner_body(body, place)); });
+  const bool wheelsets = t.each("wheelset", [&](const Table& set) {
+    runner.bodies.push_back(read_runner_wheelset(set, place));
+  });
+  if (!bodies || !wheelsets) t.end_part();  // elements name them
 }
 
-void read_runner_elements(const Table& t, const BogiePlace& place, Runner& runner) {
-  t.each("element", [&](const Table& e) { read_runner_element(e, place, runner); });
+/// @returns whether none was refused
+bool read_runner_elements(const Table& t, const BogiePlace& place, Runner& runner) {
+  return t.each("element", [&](const Table& e) { read_runner_element(e, place, runner); });
 }
 
 /// Places of a bogie that is written once: NAME_1 at the first, and so on.
@@ -285,8 +288,9 @@ Runner read_runner(const Table& t) {
   const std::vector<BogiePlace> places =
       bogie ? read_bogie_places(*bogie) : std::vector<BogiePlace>{};
   for (const BogiePlace& place : places) read_runner_bodies(*bogie, place, runner);
-  read_runner_elements(t, {}, runner);
-  for (const BogiePlace& place : places) read_runner_elements(*bogie, place, runner);
+  bool known = read_runner_elements(t, {}, runner);
+  for (const BogiePlace& place : places)
+    known = read_runner_elements(*bogie, place, runner) && known;
   for (const RunnerBody& body : runner.bodies)
     if (std::count_if(runner.bodies.begin(), runner.bodies.end(),
                       [&](const RunnerBody& other) { return other.name == body.name; }) > 1)
@@ -299,6 +303,7 @@ Runner read_runner(const Table& t) {
                    [](const RunnerBody& b) { return b.is_wheelset(); }))
     t.refuse("wheelset", "E-VEHICLE-25",
              "this vehicle has no wheelset; expected one or more [[wheelset]]");
+  if (!known) t.end_part();  // the vehicle cannot be balanced without its elements
   return runner;
 }
 

@@ -20,8 +20,8 @@ std::string_view trimmed(std::string_view text) {
   return text;
 }
 
-/// The place of the first comma that parts values, or the text's end. What is not closed is left to
-/// the parser of values, which names it.
+/// The place of the first comma that parts values, or the text's end. A quote or bracket that is
+/// not closed is left to the parser of values, which names it.
 std::size_t end_of_value(std::string_view text) {
   int depth = 0;
   char quote = '\0';

@@ -130,6 +130,7 @@ Value Table::kept(std::string_view key, Read read, Value otherwise) const {
     return read(need(key));
   } catch (const PlacedError& error) {
     if (!document.collects) throw;
+    document.tainted = true;
     const bool is_missing = error.messages().front().id == kMissing.name();
     if (!is_missing || !document.doubtful.contains(view_->table))
       document.bad_values.push_back({error.source, error.messages()});

@@ -71,45 +71,74 @@ class Table {
   /// names the nearest known one. Call once, on the root, after everything was read.
   void finish() const;
 
-  /// Calls `read` on this root, then finish(), and throws all errors of values together, in the
-  /// file's order; where no value is bad, it throws all refusals kept by `attempt`, and the one
-  /// that ended `read`. A refusal, and any other exception, may follow from the number that
-  /// replaces a bad value: so values come first.
+  /// Calls `read` on this root and throws all errors together, in the file's order: bad values, the
+  /// refusals that were kept and the one that ended `read`, and unknown keys. A refusal behind a
+  /// bad value may follow from the number that replaces it, and is dropped.
+  /// @param keys  all that this root may have. Beside another error none of them is unknown, since
+  ///   the reader that asks for it may have been left out. Without them unknown keys are told only
+  ///   where `read` came to its end.
   template <typename Read>
-  auto whole(Read read) const {
+  auto whole(Read read, Names keys = {}) const {
     collect();
     auto result = [&] {
       try {
         return read(*this);
+      } catch (const Ended&) {
+        throw_kept(true, keys);
+        throw;
       } catch (const InputError& last) {
-        throw_kept(&last);
+        static_cast<void>(keep(last));
+        throw_kept(true, keys);
         throw;
       } catch (const std::exception&) {
         throw_faults();
         throw;
       }
     }();
-    throw_kept(nullptr);
+    throw_kept(false, keys);
     return result;
   }
   /// Within `whole` keeps the refusal that ends `part`, so that reading goes on behind it.
+  /// @param tables  the keys of this table below which `part` reads keys that no other part reads:
+  ///   where it does not come to its end, unknown keys are not told there
+  /// @param known   whether all that `part` builds on was read; where not, it is left out
+  /// @returns whether it was read and nothing in it was refused
   template <typename Part>
-  void attempt(Part part) const {
-    try {
-      part();
-    } catch (const InputError& error) {
-      if (!keep(error)) throw;
-    }
+  bool attempt(Names tables, Part part, bool known = true) const {
+    const std::size_t before = refused();
+    if (!known || !comes_to_end(part))
+      for (const std::string_view key : tables) leave_open(key);
+    return known && refused() == before;
   }
-  /// Calls `read` on each table of [[key]], in the file's order, each one an `attempt`.
+  /// An attempt that nothing behind it builds on, or whose result the caller drops where it met an
+  /// error: a bad value in it does not drop the refusals behind it.
+  /// @returns whether it was read and met no error
+  template <typename Part>
+  bool apart(Names tables, Part part, bool known = true) const {
+    const bool tainted = is_tainted();
+    const std::size_t before = bad_values();
+    const bool is_whole = attempt(tables, part, known);
+    set_tainted(tainted);
+    return is_whole && bad_values() == before;
+  }
+  /// Calls `read` on each table of [[key]], in the file's order, each one an attempt.
+  /// @returns whether nothing in them was refused
   template <typename Read>
-  void each(std::string_view key, Read read) const {
-    for (const Table& entry : tables(key)) attempt([&] { read(entry); });
+  bool each(std::string_view key, Read read) const {
+    const std::size_t before = refused();
+    for (const Table& entry : tables(key)) {
+      const auto part = [&] { read(entry); };
+      if (!comes_to_end(part)) entry.leave_open();
+    }
+    return refused() == before;
   }
-  /// Ends `whole` here where only refusals were kept: the reading behind it needs what they refuse.
-  void stop_if_refused() const;
-  /// Within `whole`: nothing was kept so far.
-  [[nodiscard]] bool is_faultless() const;
+  /// Within `whole` ends the attempt around it, or all of the reading, behind a refusal that was
+  /// kept: what follows needs what was refused.
+  [[noreturn]] void end_part() const;
+  /// Within `whole` says that the key is known, and that the keys of the tables in it are not.
+  void leave_open(std::string_view key) const;
+  /// Within `whole`: refusals are dropped from here on, since a bad value came before.
+  [[nodiscard]] bool is_tainted() const;
 
   [[nodiscard]] std::string name() const;  // "rail.constants", "load[1]"; root: ""
   [[nodiscard]] const std::filesystem::path& file() const;
@@ -127,10 +156,28 @@ class Table {
   /// read(entry of the key), or `otherwise` after an error that `whole` keeps.
   template <typename Read, typename Value>
   Value kept(std::string_view key, Read read, Value otherwise) const;
+  struct Ended {};  // thrown by end_part()
+  /// Whether `part` came to its end. Otherwise its refusal is kept.
+  template <typename Part>
+  bool comes_to_end(Part& part) const {
+    try {
+      part();
+      return true;
+    } catch (const Ended&) {
+      return false;
+    } catch (const InputError& error) {
+      if (!keep(error)) throw;
+      return false;
+    }
+  }
   void collect() const;
   [[nodiscard]] bool keep(const InputError& refusal) const;  // false outside of `whole`
-  void throw_kept(const InputError* last) const;             // if there are any
-  void throw_faults() const;                                 // the same without unknown keys
+  [[nodiscard]] std::size_t refused() const;                 // number of refusals so far
+  [[nodiscard]] std::size_t bad_values() const;              // and of bad values
+  void set_tainted(bool tainted) const;
+  void leave_open() const;                             // this table
+  void throw_kept(bool ends_early, Names keys) const;  // all errors, if there are any
+  void throw_faults() const;                           // the same without unknown keys
   explicit Table(std::shared_ptr<const View> view) : view_(std::move(view)) {}
   std::shared_ptr<const View> view_;
 };

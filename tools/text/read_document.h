@@ -25,6 +25,7 @@ struct PlacedError : InputError {
 struct Kept {
   toml::source_region source;
   std::vector<Message> messages;
+  bool is_refusal = false;
 };
 
 /// A parsed file and what has been asked of it so far.
@@ -36,8 +37,11 @@ struct Document {
   bool collects = false;  // the errors of getters are kept below instead of thrown
   std::vector<Kept> bad_values;
   std::vector<Kept> refusals;  // of values that are good each by itself
+  std::size_t refused = 0;     // the number of refusals, with those that were dropped
+  bool tainted = false;        // refusals are dropped: they may follow from a bad value
   toml::table absent;          // stands for a table that could not be read
-  /// Tables with a choice that could not be read: which keys they need and know is not known.
+  /// Tables with a choice that could not be read, and those that were not read to their end: which
+  /// keys they need and know is not known.
   std::set<const toml::table*> doubtful;
 };
 

@@ -1,6 +1,8 @@
 // The errors of a file that is read whole are kept and thrown together.
 #include <algorithm>
-#include <limits>
+#include <iterator>
+#include <set>
+#include <string>
 #include <tuple>
 #include <utility>
 
@@ -17,15 +19,19 @@ auto order(const Kept& error) {
   return std::tuple(!at.path, is_option, at.begin.line, at.begin.column);
 }
 
-/// A key that stands for a missing one is unknown too: one error a place is enough.
-bool same_place(const Kept& a, const Kept& b) {
-  return a.source.path && b.source.path && *a.source.path == *b.source.path && order(a) == order(b);
+/// One error a place is enough: a key that stands for a missing one is unknown too, and a key may
+/// be read twice. But two checks of a table may refuse it at its head.
+bool repeats(const Kept& a, const Kept& b) {
+  if (!a.source.path || !b.source.path || *a.source.path != *b.source.path) return false;
+  const bool are_checks =
+      a.is_refusal && b.is_refusal && a.messages.front().id != b.messages.front().id;
+  return order(a) == order(b) && !are_checks;
 }
 
 [[noreturn]] void throw_in_order(std::vector<Kept> errors) {
   std::stable_sort(errors.begin(), errors.end(),
                    [](const Kept& a, const Kept& b) { return order(a) < order(b); });
-  errors.erase(std::unique(errors.begin(), errors.end(), same_place), errors.end());
+  errors.erase(std::unique(errors.begin(), errors.end(), repeats), errors.end());
   std::vector<Message> messages;
   for (const Kept& error : errors)
     messages.insert(messages.end(), error.messages.begin(), error.messages.end());
@@ -34,7 +40,7 @@ bool same_place(const Kept& a, const Kept& b) {
 
 Kept kept_of(const InputError& error) {
   const auto* placed = dynamic_cast<const PlacedError*>(&error);
-  return {placed ? placed->source : toml::source_region{}, error.messages()};
+  return {placed ? placed->source : toml::source_region{}, error.messages(), true};
 }
 
 }  // namespace
@@ -47,26 +53,40 @@ void Table::finish() const {
 void Table::collect() const { view_->document->collects = true; }
 
 bool Table::keep(const InputError& refusal) const {
-  if (!view_->document->collects) return false;
-  view_->document->refusals.push_back(kept_of(refusal));
+  Document& document = *view_->document;
+  if (!document.collects) return false;
+  ++document.refused;
+  if (!document.tainted) document.refusals.push_back(kept_of(refusal));
   return true;
 }
 
-void Table::stop_if_refused() const {
-  if (view_->document->bad_values.empty() && !view_->document->refusals.empty())
-    throw_in_order(std::exchange(view_->document->refusals, {}));
+std::size_t Table::refused() const { return view_->document->refused; }
+std::size_t Table::bad_values() const { return view_->document->bad_values.size(); }
+bool Table::is_tainted() const { return view_->document->tainted; }
+void Table::set_tainted(bool tainted) const { view_->document->tainted = tainted; }
+
+void Table::end_part() const { throw Ended(); }
+
+void Table::leave_open() const { view_->document->doubtful.insert(view_->table); }
+
+void Table::leave_open(std::string_view key) const {
+  if (!has(key)) return;
+  const toml::node& node = *view_->table->get(key);
+  if (const toml::table* table = node.as_table()) view_->document->doubtful.insert(table);
+  if (const toml::array* array = node.as_array())
+    for (const toml::node& entry : *array)
+      if (const toml::table* table = entry.as_table()) view_->document->doubtful.insert(table);
 }
 
-bool Table::is_faultless() const {
-  return view_->document->bad_values.empty() && view_->document->refusals.empty();
-}
-
-void Table::throw_kept(const InputError* last) const {
+void Table::throw_kept(bool ends_early, Names keys) const {
   Document& document = *view_->document;
-  if (last) {
-    document.refusals.push_back(kept_of(*last));
-  } else if (document.refusals.empty()) {
-    // All was read: a key that no getter asked for is unknown.
+  if (document.refused > 0 || !document.bad_values.empty())
+    for (const std::string_view key : keys) static_cast<void>(has(key));
+  if (ends_early) {  // no table below is sure to be read to its end
+    const std::set<std::string, std::less<>> known = document.known[view_->table];
+    for (const std::string& key : known) leave_open(key);
+  }
+  if (!ends_early || keys.size() > 0) {
     std::vector<Kept> unknown = unknown_keys(document, *view_->table, view_->name);
     std::move(unknown.begin(), unknown.end(), std::back_inserter(document.bad_values));
   }
@@ -76,10 +96,10 @@ void Table::throw_kept(const InputError* last) const {
 void Table::throw_faults() const {
   Document& document = *view_->document;
   document.collects = false;
-  std::vector<Kept> bad_values = std::exchange(document.bad_values, {});
+  std::vector<Kept> errors = std::exchange(document.bad_values, {});
   std::vector<Kept> refusals = std::exchange(document.refusals, {});
-  if (!bad_values.empty()) throw_in_order(std::move(bad_values));
-  if (!refusals.empty()) throw_in_order(std::move(refusals));
+  std::move(refusals.begin(), refusals.end(), std::back_inserter(errors));
+  if (!errors.empty()) throw_in_order(std::move(errors));
 }
 
 }  // namespace railstep

@@ -3,7 +3,6 @@
 #include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -97,15 +96,6 @@ std::string place_of_buckling(const Track& given, double factor) {
 }
 
 }  // namespace
-
-double critical_compression(const Track& track) {
-  Track unit = track;
-  unit.axial_force = -1.;
-  if (unit.right) unit.right->axial_force = -1.;
-  const double crushing = track.material.young * track.section.area;
-  if (!buckles(unit, crushing)) return std::numeric_limits<double>::infinity();
-  return critical_factor(unit, crushing);
-}
 
 void refuse_buckled(const Track& given) {
   const Track track = linear_about_rest(given);

@@ -3,18 +3,13 @@
 
 namespace railstep {
 
-/// The smallest compression of the rails, N, at which the track's stiffness K0 - P K_g is no longer
-/// positive definite: it buckles. K_g is that of a uniform stress P/A in Green-Lagrange strain. The
-/// track's own axial force does not matter. Infinite if no compression up to E A makes it buckle; 0
-/// or a rounding of it if a free rigid mode rotates the rail.
+/// Throws Refused, and names both forces, if the track's rails carry the compression at which it
+/// buckles, or more: at which its stiffness K0 - P K_g is no longer positive definite. K_g is that
+/// of a uniform stress P/A in Green-Lagrange strain.
 ///
 /// By bisection on the signs of the pivots of K0 - P K_g, those within 1e-12 of their diagonal
 /// taken as rounding: on a rail of kilometres between its ends the result is too high, by 1.5e-5 of
 /// it over 1.5 km and by 4 % over 10 km.
-double critical_compression(const Track& track);
-
-/// Throws Refused, and names both forces, if the track's rails carry the compression at which it
-/// buckles, or more.
 void refuse_buckled(const Track& track);
 
 }  // namespace railstep

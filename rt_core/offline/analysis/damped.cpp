@@ -26,8 +26,8 @@ constexpr int kMostUnknowns = 100'000;             // of a damped line: 400 vect
 constexpr double kBeyond = 10.;  // of the highest undamped rate: above the effect of dampers
 constexpr int kFirst = 60, kMore = 40, kMost = 800;  // vectors of the Krylov space
 
-/// The root nearest to `rate` of shape' Q(rate) shape = 0, plain transpose: as Q is symmetric, it
-/// errs by the square of what the shape does.
+/// The root nearest to `rate` of shape' Q(rate) shape = 0, plain transpose. As Q is symmetric, the
+/// error of the root is of second order in the error of the shape.
 ComplexNumber improved(const Line& line, ComplexNumber rate, const Eigen::VectorXcd& shape) {
   const auto product = [&](const Eigen::SparseMatrix<double>& A) -> ComplexNumber {
     return (shape.transpose() * (A.cast<ComplexNumber>() * shape))(0, 0);

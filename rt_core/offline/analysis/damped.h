@@ -18,11 +18,11 @@ struct Oscillations {
 /// forces.
 double residual(const Line& line, std::complex<double> rate, const Eigen::VectorXcd& shape);
 
-/// Those with |rate| <= radius, 1/s: every rate of that quarter disc is found by Arnoldi's method
-/// about its middle, until more vectors bring no more of them, then checked: residual() is at most
-/// 1e-8, or what rounding of K x leaves of modes far below the highest (f under 1e-4 of it), by
-/// inverse iteration where Arnoldi leaves more than 1e-10. Rigid motions are left out. Throws
-/// Failed if they were not all found.
+/// The modes with |rate| <= radius, 1/s. Arnoldi's method about the middle of this quarter disc
+/// finds every rate in it: vectors are added until they bring no more rates. Inverse iteration
+/// refines modes whose residual() is then above 1e-10. At the end it is at most 1e-8, or what
+/// rounding of K x leaves for modes far below the highest (f under 1e-4 of it). Rigid motions are
+/// left out. Throws Failed if not all modes were found.
 Oscillations oscillations(const Line& line, double radius);
 
 /// Natural modes of a whole track, lowest frequency first.

@@ -14,7 +14,7 @@ bool is_held(const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>& factor,
 /// Lines of a track one behind the other.
 struct JoinedLines {
   std::vector<Eigen::Index> first;        // [lines + 1] where a line's unknowns begin
-  Eigen::SparseMatrix<double> stiffness;  // without what is one-sided
+  Eigen::SparseMatrix<double> stiffness;  // without one-sided springs
   Eigen::SparseMatrix<double> closing;    // [unknowns][ports] how far each port closes
 };
 JoinedLines join(const Track& track, const std::vector<Line>& lines,

@@ -15,9 +15,9 @@ struct Modes {
 /// follow the others: there are fewer modes by their number.
 Modes modes(const Line& line);
 
-/// The lowest modes, at most `count` of them, by shift-invert Lanczos beside the rigid ones; that
-/// none is left out is checked by the signs of the pivots of K - omega^2 M, and a dense solution
-/// takes over where one is. Throws Failed if the line is too long for that.
+/// The lowest modes, at most `count` of them, by shift-invert Lanczos beside the rigid ones. The
+/// signs of the pivots of K - omega^2 M show whether a mode was missed; then a dense solution takes
+/// over. Throws Failed if the line is too long for that.
 Modes lowest_modes(const Line& line, int count);
 
 /// How many modes of a held line lie below a frequency, Hz: by the same count.

@@ -37,17 +37,17 @@ struct Equilibrium {
   std::vector<NewtonStep> history;
 };
 
-/// Equilibrium by Newton's method with the analytic tangent. The load goes on in one step; a step
-/// that does not converge is halved, one that does is followed by one of twice its size.
+/// Equilibrium by Newton's method with the analytic tangent. The load is applied in one step. A
+/// step that does not converge is halved; one that converges is followed by one of twice its size.
 ///
 /// Sizes are compared with forces on slopes divided by `slope_length`. A step has converged when
 /// the residual is below the tolerance times the load, or when no entry of it is above what
-/// round-off leaves, 8 eps |K| |q|, or when two iterations did not halve it and its norm is below
-/// that of 34 eps |K| |q|: between a position and a nodal force lie some 34 roundings. Along the
-/// axis of a slender beam (length over height 1e4) that may be a thousand times a small load across
-/// it, and no iteration gets below; the deflection of 4 elements is right to 1e-7 all the same, of
-/// 32 to 1e-5. Slender beams that bend far take hundreds of iterations. An equilibrium need not be
-/// stable: is_stable() tells.
+/// round-off leaves, 8 eps |K| |q|. It has also converged when two iterations did not halve the
+/// residual and its norm is below that of 34 eps |K| |q|: some 34 roundings lie between a position
+/// and a nodal force. Along the axis of a slender beam (length over height 1e4) this may be a
+/// thousand times a small load across it, and no iteration gets below it. The deflection is still
+/// right to 1e-7 with 4 elements and to 1e-5 with 32. Slender beams that bend far take hundreds of
+/// iterations. An equilibrium need not be stable: is_stable() tells.
 /// @param start  where to begin, in place of the shape at rest
 Equilibrium equilibrium(const Structure& structure, const StructureLoad& load,
                         const NewtonOptions& options = {}, const Eigen::VectorXd* start = nullptr);

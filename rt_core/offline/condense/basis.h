@@ -37,7 +37,8 @@ void refuse_free_mode(double lowest_hz);
 
 /// Galerkin's coordinates over the span of some shapes; shapes that nearly depend on others are
 /// dropped. Real shapes over symmetric matrices make no energy, whatever is left out.
-/// @param shapes [unknowns][any] Throws Refused on a free rigid mode, and if nothing is left.
+/// @param shapes [unknowns][any]
+/// Throws Refused on a free rigid mode, and if nothing is left.
 Basis ritz_basis(const Line& line, const Eigen::MatrixXd& shapes);
 
 /// Part of the static shapes K^-1 f of forces that kept shapes do not span; orthonormal over the

@@ -14,9 +14,9 @@ struct DampedShapes {
 /// first-order form over (Omega y, y'), normalised, but not yet checked.
 ///
 /// Rates that differ by no more than the errors of an eigen solver count as equal and get their
-/// mean. Any mixture of their shapes is a shape as well. Those of the solver may be parallel, or
-/// have no product with themselves, and are combined to have shape' (2 rate + D) shape = I or 2 I
-/// among them.
+/// mean. Any mixture of their shapes is a shape as well. The solver's shapes may be parallel, or
+/// their products with themselves may be 0. They are combined so that shape' (2 rate + D) shape = I
+/// or 2 I among them.
 /// @param omega    [kept] 1/s
 /// @param damping  [kept][kept] D, 1/s, symmetric
 /// @param rates    [2 kept] 1/s

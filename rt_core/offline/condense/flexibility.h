@@ -29,7 +29,7 @@ struct PairTable {
 /// shapes and its inner flexibility with the ends held. The model is the track as it stands, or its
 /// lines in the coordinates of a basis; there a load point leaves out the section's own strain
 /// (a_y, b_z), so that the squeeze of the head is in G_res. G_exact has a slope jump of
-/// -1/(k_z G A) at equal places, G_res carries it.
+/// -1/(k_z G A) at equal places, and so has G_res.
 ///
 /// All queries skip lines that the load point does not move. They throw Refused on a
 /// rail that the track does not have, and on a free rigid mode of a line that the load point moves.
@@ -47,10 +47,10 @@ class ResidualFlexibility {
   ResidualFlexibility& operator=(const ResidualFlexibility&) = delete;
 
   /// G_res(x, x); [tabled elements][points + 1], m/N, at equal steps of x; of a ring
-  /// those are one bay's, which all others repeat. On the axis never below 0 but
-  /// by rounding. Above it the element's two Gauss points make it softer than the rail to the
-  /// squeeze of the section, by up to 1e-3 of G_exact at its end nodes: there it is below 0,
-  /// and nothing is clipped here.
+  /// those are one bay's, which all others repeat. On the axis it is never below 0, except by
+  /// rounding. Above the axis the element's two Gauss points make the element softer than the rail
+  /// to the squeeze of the section, by up to 1e-3 of G_exact at its end nodes. There G_res is below
+  /// 0, and nothing is clipped here.
   std::vector<double> under(LoadPoint load_point) const;
   /// From the load point to another of its rail in the same section.
   std::vector<double> under(LoadPoint load_point, LoadPoint other) const;

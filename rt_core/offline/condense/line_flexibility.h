@@ -43,9 +43,9 @@ struct Elements {
 /// point's rail in the line; those of a functional are included.
 class LineFlexibility {
  public:
-  /// Displacements of load point b at the places of the elements within a range of one, under a
-  /// unit force of load point a at each place of that: [places][(2 range + 1) x (points + 1)], m/N;
-  /// 0 off the rail.
+  /// Displacements of load point b at the places of the elements within a range of an element,
+  /// under a unit force of load point a at each place of that element: [places][(2 range + 1) x
+  /// (points + 1)], m/N; 0 off the rail.
   using Strip = std::function<Eigen::MatrixXd(int element)>;
 
   virtual ~LineFlexibility() = default;

@@ -15,10 +15,10 @@ struct Stretch {
   }
 };
 
-/// Solutions of a banded, symmetric, positive definite system around few loads, exact, at a cost
-/// that grows with the number of rows that are read: the inverse within the band by Takahashi's
-/// recurrence (Takahashi, Fagan and Chin, 1973; Erisman and Tinney, 1975), and from there out along
-/// the factor from either end, in the direction in which solutions fade.
+/// Exact solutions of a banded, symmetric, positive definite system around few loads, at a cost
+/// that grows with the number of rows that are read. The inverse within the band is by Takahashi's
+/// recurrence (Takahashi, Fagan and Chin, 1973; Erisman and Tinney, 1975). From there solutions go
+/// outwards along the factor from either end, in the direction in which they fade.
 class LocalInverse {
  public:
   /// The matrix with its unknowns in order along the track; factored without pivots, in work and

@@ -20,7 +20,7 @@ Shapes::Shapes(std::vector<std::vector<int>> cells, std::vector<Wave> waves)
   }
 }
 
-/// e^(i k b), over -i where the wave is an imaginary part: the real part of the product is wanted.
+/// e^(i k b), times -i where the wave is an imaginary part: the real part of the product is used.
 std::complex<double> Shapes::wave_phase(const Wave& wave, int bay) const {
   const std::int64_t whole = static_cast<std::int64_t>(wave.number) * bay;
   const std::complex<double> at =

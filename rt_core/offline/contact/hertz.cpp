@@ -5,6 +5,7 @@
 #include <numbers>
 #include <string>
 
+#include "offline/math/hertz_depth.h"
 #include "offline/math/refuse.h"
 
 namespace railstep {
@@ -97,7 +98,7 @@ double hertz_constant(double wheel_radius, double crown_radius, double young, do
 }
 
 double contact_depth(const ContactLaw& contact, double force) {
-  return contact.hertz > 0. ? std::pow(force / contact.hertz, 2. / 3.) : force / contact.stiffness;
+  return contact.hertz > 0. ? hertz_depth(force, contact.hertz) : force / contact.stiffness;
 }
 
 }  // namespace railstep

@@ -39,7 +39,7 @@ Cost vehicles_cost(const Model& model, std::int64_t contacts) {
     const std::int64_t n = model.vehicle[v].size;
     sum = sum + work(6 * n * n + 20 * n, 3 * n * n + 14 * n);
   }
-  for (ContactId i = tread_count(model); i < wheel_count(model); ++i) {
+  for (const ContactId i : upright_wheels(model)) {
     const std::int64_t n = bodies_of(model, i).size;
     const Cost law = work(150 + 6 * n, 100 + 4 * n) + contacts * kPairLookUp;
     const Cost own = work(200 + 8 * n, 80 + 6 * n) + 2 * irregularity_cost(model);
@@ -61,7 +61,7 @@ Cost tables_cost(const Model& model) {
     const SuspendedModel& own = model.vehicle[v];
     sum = sum + 6 * table_cost(own.travel.rows) + forces_cost(own.force, own.forces);
   }
-  for (ContactId i = tread_count(model); i < wheel_count(model); ++i)
+  for (const ContactId i : upright_wheels(model))
     sum = sum + 8 * table_cost(bodies_of(model, i).travel.rows);
   return sum;
 }
@@ -97,7 +97,7 @@ Cost coupled_cost(const Model& model, std::int64_t contacts) {
     if (model.wheelset[i].guide == Guide::augmented_lagrangian &&
         model.wheelset[i].cap > iterations)
       iterations = model.wheelset[i].cap;
-  for (ContactId i = tread_count(model); i < wheel_count(model); ++i)
+  for (const ContactId i : upright_wheels(model))
     lift += 2 * std::int64_t{bodies_of(model, i).size};
   const std::int64_t ports = contacts + model.fixed.count;
   const Cost solve = wheel_seat_row_count(model) > 0 ? coupled_runners_cost(model)

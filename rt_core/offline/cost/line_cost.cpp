@@ -106,7 +106,7 @@ Cost loads_cost(const Model& model) {
 
 std::int64_t bases_on(const Model& model, const LineModel& line) {
   std::int64_t count = 0;
-  for (std::int32_t i = 0; i < contact_count(model); ++i)
+  for (const ContactId i : contacts(model))
     if (line.rail_factor[model.contact[i].rail] != 0.) ++count;
   const std::int64_t seats = wheel_seat_row_count(model) / 2;  // of a rail
   if (seats > 0 && seats_mirror(model))

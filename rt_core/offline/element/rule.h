@@ -1,12 +1,13 @@
 #pragma once
+#include "offline/math/constants.h"
 
 namespace railstep {
 
 /// Isotropic linear elastic material.
 struct Material {
-  double young = 210e9;    // E, Pa
-  double poisson = 0.3;    // nu
-  double density = 7850.;  // kg/m3
+  double young = kSteelYoung;      // E, Pa
+  double poisson = kSteelPoisson;  // nu
+  double density = kSteelDensity;  // kg/m3
   double shear_modulus() const { return young / (2. * (1. + poisson)); }
 };
 

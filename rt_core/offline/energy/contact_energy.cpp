@@ -15,7 +15,7 @@ int ports_of(const Model& model, StandingContacts& c, RailForce* acting) {
   for (int i = 0; i < c.loads; ++i)
     acting[i] = {model, model.load[i].load_point, c.load[i].row.element, c.load[i].xi,
                  c.load[i].force};
-  for (int i = 0; i < c.contacts; ++i)
+  for (const ContactId i : contacts(c))
     acting[c.loads + i] = {model, model.contact[i].load_point, c.contact[i].row.element,
                            c.contact[i].xi, 0.};
   return c.loads + c.contacts;
@@ -28,14 +28,14 @@ bool stands(const WheelContact& at) { return at.on_rail || at.on_ground; }
 
 /// A linear contact is bilateral. Its force is known, and contains the damper's part, which the
 /// penetration does not show.
-bool is_linear(const Model& model, int wheel) {
+bool is_linear(const Model& model, ContactId wheel) {
   return is_upright(model, wheel) && model.contact[wheel].law.hertz == 0.;
 }
 /// Whether residual flexibility changes the depth of a contact.
-bool takes_residual(const Model& model, int wheel) {
+bool takes_residual(const Model& model, ContactId wheel) {
   return !is_flange(model, wheel) && !is_linear(model, wheel);
 }
-double hertz_of(const Model& model, int wheel) {
+double hertz_of(const Model& model, ContactId wheel) {
   return takes_residual(model, wheel) ? model.contact[wheel].law.hertz
                                       : 1.;  // not used: such a port stays open
 }
@@ -53,14 +53,14 @@ void solve_forces(const Model& model, StandingContacts& c, RailForce* acting, in
   double W[kMaxWheels * kMaxWheels], free[kMaxWheels], negative[kMaxWheels];
   PortLaw law[kMaxWheels];
   double force[kMaxWheels], d[kMaxWheels];
-  for (int i = 0; i < c.contacts; ++i) {
+  for (const ContactId i : contacts(c)) {
     const bool on_rail = c.contact[i].on_rail && takes_residual(model, i);
     law[i] = {hertz_of(model, i), 0., 0.};
     force[i] = 0.;
     free[i] =
         on_rail ? c.approach[i] + residual_displacement(model, acting, ports, c.loads + i) : -1.;
     if (c.contact[i].on_ground && takes_residual(model, i)) free[i] = c.approach[i];
-    for (int j = 0; j < c.contacts; ++j) {
+    for (const ContactId j : contacts(c)) {
       const RailForce &at = acting[c.loads + i], &other = acting[c.loads + j];
       const bool coupled = on_rail && c.contact[j].on_rail && takes_residual(model, j);
       W[i * c.contacts + j] = !coupled ? 0.
@@ -73,10 +73,10 @@ void solve_forces(const Model& model, StandingContacts& c, RailForce* acting, in
   }
   for (int iteration = 0; iteration < kIterations; ++iteration) {
     double shifted[kMaxWheels];
-    for (int i = 0; i < c.contacts; ++i) shifted[i] = free[i] - negative[i] * force[i];
+    for (const ContactId i : contacts(c)) shifted[i] = free[i] - negative[i] * force[i];
     static_cast<void>(solve_ports(c.contacts, W, law, shifted, force, d));  // as good as it gets
   }
-  for (int i = 0; i < c.contacts; ++i) {
+  for (const ContactId i : contacts(c)) {
     if (!takes_residual(model, i)) continue;
     acting[c.loads + i].force = c.contact[i].on_rail ? -force[i] : 0.;
     const double depth = std::max(d[i], 0.);
@@ -92,7 +92,7 @@ double flange_energy(const ContactLaw& contact, double depth) {
 
 /// Penetrations of all contacts under known forces, and the energy of contacts without part in G.
 void find_depths(const Model& model, const State& state, StandingContacts& c) {
-  for (int i = 0; i < c.contacts; ++i) {
+  for (const ContactId i : contacts(c)) {
     c.depth[i] = c.approach[i] + c.moved[c.loads + i];
     if (is_linear(model, i))
       c.hertz += linear_energy(model.contact[i].law, state.contact_force[i], c.depth[i]);
@@ -114,11 +114,11 @@ StandingContacts standing_contacts(const Model& model, const State& state) {
     find_flanges(model, model.flange[f], at,
                  c.contact + flange_contact(model, flange_number(f, 0)));
   find_vehicle_contacts(model, state.steps, 0., at, c.contact);
-  for (int i = 0; i < c.contacts; ++i)
+  for (const ContactId i : contacts(c))
     c.approach[i] = stands(c.contact[i]) ? c.contact[i].penetration : 0.;
   RailForce acting[kMaxRailForces];
   const int ports = ports_of(model, c, acting);
-  for (int i = 0; i < c.contacts; ++i)
+  for (const ContactId i : contacts(c))
     if (is_linear(model, i) && c.contact[i].on_rail)
       acting[c.loads + i].force = -state.contact_force[i];
   if (c.contacts > 0) solve_forces(model, c, acting, ports);
@@ -137,7 +137,8 @@ double contact_dissipation(const Model& model, const StandingContacts& before,
   const bool held = model.form == Form::condensed;
   const double late = held ? model.scheme.theta : .5;
   double sum = 0.;
-  for (ContactId i = tread_count(model); i < after.contacts; ++i) {
+  for (const ContactId i : contacts(model)) {
+    if (i < tread_count(model)) continue;
     const bool one_sided = is_flange(model, i);
     const ContactLaw& contact = model.contact[i].law;
     if (contact.damping == 0.) continue;

@@ -22,6 +22,8 @@ struct StandingContacts {
   double residual;               // F' G F / 2, J
 };
 
+inline ContactIds contacts(const StandingContacts& c) { return {0, c.contacts}; }
+
 StandingContacts standing_contacts(const Model& model, const State& state);
 
 /// Energy that dampers of vehicles' contacts and of flanges dissipate in a step,

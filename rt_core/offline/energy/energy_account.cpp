@@ -32,7 +32,7 @@ double outer_force(const Model& model, const WheelsetModel& w, int direction, co
 /// Forces of the rail on a vehicle's wheels, over its coordinates.
 Eigen::VectorXd wheel_forces_on(const Model& model, const SuspendedModel& v, const State& at) {
   Eigen::VectorXd sum = Eigen::VectorXd::Zero(v.size);
-  for (ContactId i = tread_count(model); i < wheel_count(model); ++i)
+  for (const ContactId i : upright_wheels(model))
     if (&bodies_of(model, i) == &v)
       sum += Eigen::Map<const Eigen::VectorXd>(model.contact[i].row, v.size) * at.contact_force[i];
   return sum;
@@ -134,7 +134,7 @@ void EnergyAccount::shift_bay(std::int64_t step) {
         }
   for (ExternalContact& at : last_.external)
     for (RailRow& row : at.row) row.element -= e.bay_elements;
-  for (int i = 0; i < last_.contacts.contacts; ++i) {
+  for (const ContactId i : contacts(last_.contacts)) {
     RailRow& row = last_.contacts.contact[i].row;
     row.element -= e.bay_elements;
     for (std::int32_t s = 0; s < row.seats; ++s) row.seat[s] -= 2 * e.bay_elements;
@@ -172,7 +172,7 @@ void EnergyAccount::add_contacts(const Standing& now) {
   double sum = residual_work(before, after) - (after.hertz - before.hertz) -
                (after.residual - before.residual);
   double mean[kMaxWheels];
-  for (int i = 0; i < after.contacts; ++i) {
+  for (const ContactId i : contacts(after)) {
     mean[i] = wheel_force(now, i);
     const bool lost =
         !is_upright(model_, i) && !(before.contact[i].on_rail && after.contact[i].on_rail);
@@ -240,7 +240,7 @@ double EnergyAccount::vehicle_passage(const Standing& now) const {
     find_vehicle_contacts(model_, step, later ? model_.scheme.dt : 0.,
                           {at.state.u, {at.state.u, at.state.v}, track_offset(model_, step)},
                           moved);
-    for (ContactId i = tread_count(model_); i < wheel_count(model_); ++i) {
+    for (const ContactId i : upright_wheels(model_)) {
       const double change = moved[i].penetration - at.contacts.approach[i];
       sum += .5 * wheel_force(now, i) * (later ? -change : change);
     }
@@ -306,7 +306,7 @@ void EnergyAccount::add_start(const Standing& now) {
   const State& s = last_.state;
   std::vector<double> f(static_cast<std::size_t>(model_.unknowns));
   forces(model_, s.steps, f.data(), nullptr);
-  for (int i = 0; i < contact_count(model_); ++i)
+  for (const ContactId i : contacts(model_))
     for (std::int32_t l = 0; l < model_.lines && last_.contacts.contact[i].on_rail; ++l)
       spread(model_.line[l], last_.contacts.contact[i].row, -s.contact_force[i], f.data());
   for (std::size_t i = 0; i < last_.runners.size(); ++i)

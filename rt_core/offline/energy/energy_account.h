@@ -43,9 +43,9 @@ struct EnergyFlow {
 /// from the acceleration of the state, by any method:
 ///   m g dx - F dx, or d(m v^2 / 2) - F dx if the velocity is projected (not by Baumgarte),
 /// F the other forces along x. Among these a contact does f da, a the approach, by the motion along
-/// x alone. The multiplier is not taken, for its round-off is the penalty times that of x; the
-/// step's own normal is not taken, as it is up to 1e-4 rad off that of a squeezed railhead, and at
-/// the elements' borders. Yaw does not move; gyroscopic forces do no work while it is held. The
+/// x alone. The multiplier is not used, because its round-off is the penalty times that of x. The
+/// step's own normal is not used, because it differs by up to 1e-4 rad from that of a squeezed
+/// railhead, and at the elements' borders. Yaw is held, so that gyroscopic forces do no work. The
 /// carrier of a vehicle does f da by the vehicle's motion along x alone.
 ///
 /// The loss is the energy that the scheme itself takes out (below 0: puts in), in closed form:

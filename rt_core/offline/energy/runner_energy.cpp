@@ -33,7 +33,7 @@ void stand_on_seat(const Model& model, const RunnerModel& runner, int wheelset, 
   std::fill_n(wheel.residual, kWheelSeatRows, 0.);
   std::fill_n(wheel.moved, kWheelSeatRows, 0.);
   if (!wheel.seat[0].on_rail) return;
-  const int set = runner.first_wheelset + wheelset, own = 2 * set + side;
+  const int set = runner.first_wheelset + wheelset, own = WheelId{set, side}.number();
   const SeatFlexibility gives = seat_flexibility_beside(model, runner, side, place[1]);
   for (int k = 0; k < kWheelSeatRows; ++k)
     wheel.residual[k] = moved_by_wheel(gives.along[k], wheel_force_of(at, set, side));
@@ -112,7 +112,7 @@ double work_of(StripPatch patch, double depth) {
   double sum = 0.;
   for (int i = 1; i <= kParts; ++i) {
     const double own = depth * i / kParts;
-    patch.hold = hold_of(patch, std::max(own, kLeastHeld));
+    patch.collocation = collocation_of(patch, std::max(own, kLeastHeld));
     sum += (i == kParts ? 1. : i % 2 == 1 ? 4. : 2.) * patch_force(patch, own).normal;
   }
   return sum * depth / (3. * kParts);

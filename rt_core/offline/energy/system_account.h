@@ -54,8 +54,8 @@ class SystemAccount {
 /// system and one of its track (EnergyAccount). The work of joints and springs on rails is in both,
 /// with opposite signs, so that the sum balances: joints do no work, and springs store and take
 /// energy by the motion of both their ends. The loss is the imbalance, so that its size is the
-/// error. It is over the largest, over the steps, of: stored energy without that of weight, the
-/// size of each kind of work (of the weight of parts and of the track, too), and dissipation.
+/// error. It is divided by the largest, over the steps, of: stored energy without that of weight,
+/// the size of each kind of work (of the weight of parts and of the track, too), and dissipation.
 /// @param after  called after every frame of the model with the number of frames done; may be empty
 /// @param inputs  the inputs of the run
 EnergyBalance balance_of(const PackedSystem& packed, std::int64_t frames,

@@ -11,10 +11,10 @@ struct DefectGrid {
   double patch = 0.;  // m
 };
 
-/// Steps that half of a shape, or a contact patch, may hold.
+/// Most steps in half of a shape or in a contact patch.
 inline constexpr double kMostDefectSteps = 1e7;
 
-/// Steps of a fourth of the patch, which smooths what is shorter, and 50 or more of them over a
+/// Steps of a fourth of the patch, which smooths anything shorter, and at least 50 of them over a
 /// shape of that length; 500 without a patch.
 DefectGrid defect_grid(double patch, double shape);
 

@@ -24,8 +24,8 @@ inline constexpr double kMostGenerated = 4e9;
 /// within the band, W = 2 pi n / length, of amplitude sqrt(2 S(W) 2 pi / length) and a random phase
 /// (Shinozuka and Deodatis, Appl. Mech. Rev. 44, 1991), times sin(W patch / 2) / (W patch / 2).
 /// Its periodogram is the spectrum, wave by wave. The same bits on every machine.
-/// @param stream  tells signals of one seed apart Throws Refused on a band without waves, and on
-/// more work than kMostGenerated.
+/// @param stream  distinguishes the signals of one seed
+/// Throws Refused on a band without waves, and on more work than kMostGenerated.
 Signal generate(const Spectrum& spectrum, const GenerateOptions& options, std::uint64_t stream);
 
 }  // namespace railstep

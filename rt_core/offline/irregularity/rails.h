@@ -13,8 +13,8 @@ struct RailSignals {
 
 /// Rails of a track's geometry: z = vertical +- cross_level / 2, y = alignment +- gauge / 2, plus
 /// for the left. A geometry without coefficients is straight.
-/// @param geometry  by Geometry; those with coefficients have the same start, step and count Throws
-/// Refused if they do not.
+/// @param geometry  by Geometry; those with coefficients have the same start, step and count
+/// Throws Refused if they do not.
 RailSignals rails_of(const std::array<Signal, kGeometries>& geometry);
 
 }  // namespace railstep

@@ -100,11 +100,4 @@ Signal averaged(const Signal& signal, double length) {
   return fit_signal(samples, signal.start, signal.step, signal.periodic);
 }
 
-std::vector<double> sampled(const Signal& signal, double start, double step, int count) {
-  std::vector<double> values(static_cast<std::size_t>(count));
-  for (int k = 0; k < count; ++k)
-    values[static_cast<std::size_t>(k)] = signal_at(signal.model(), start + k * step).value;
-  return values;
-}
-
 }  // namespace railstep

@@ -17,16 +17,13 @@ struct Signal {
 /// The cubic B-spline through samples at start + k step; one that is not periodic keeps its first
 /// and last value beyond its ends, where it too is twice differentiable. Between samples it misses
 /// a wave of length l by (2 pi step / l)^4 / 384 of its amplitude, to leading order.
-/// @param samples  [at least 1], m; of a periodic signal one period Throws Refused on no samples or
-/// a step that is not above 0.
+/// @param samples  [at least 1], m; of a periodic signal one period
+/// Throws Refused on no samples or a step that is not above 0.
 Signal fit_signal(const std::vector<double>& samples, double start, double step, bool periodic);
 
 /// The signal's mean over `length` around each place, as a contact patch of that length feels it:
 /// the integral of the spline, exact at the samples, and their spline between.
 /// @param length  m, at least 0
 Signal averaged(const Signal& signal, double length);
-
-/// The signal at equal steps, [count].
-std::vector<double> sampled(const Signal& signal, double start, double step, int count);
 
 }  // namespace railstep

@@ -19,7 +19,7 @@ struct Largest {
 /// resonance, so that it has no largest magnitude.
 struct BandSearch {
   std::vector<Largest> largest;       // [groups]
-  std::optional<double> undamped_hz;  // a peak narrower than kNarrowest: `largest` says nothing
+  std::optional<double> undamped_hz;  // a peak narrower than kNarrowest: `largest` has no meaning
   double unresolved = 0.;  // uncertainty of the search, over the largest; of the worst group
   int solves = 0;
 };

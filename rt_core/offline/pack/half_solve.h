@@ -6,8 +6,9 @@
 namespace railstep {
 
 /// A solve of S = L D L' that stops halfway, for a right-hand side of few entries. It is cut where
-/// it has faded: what is left out is below kFaded of the whole in the norm of S, and so is, by
-/// Schwarz's inequality, the error of each displacement beside the largest one by such a force.
+/// it has faded: the part left out is below kFaded of the whole in the norm of S. By Schwarz's
+/// inequality the error of each displacement is then below kFaded of the largest displacement by
+/// such a force.
 struct HalfSolve {
   Panels panels;                             // outside them both are 0
   std::vector<double> forward, over_pivots;  // L^-1 b, D^-1 L^-1 b
@@ -17,8 +18,7 @@ inline constexpr double kFaded = 1e-12;
 /// @param b  8 panels entries
 HalfSolve solve_halfway(const Band& S, std::vector<double> b);
 
-/// Panels behind that of a unit force to which solve_halfway() of it goes, the most over all
-/// unknowns.
+/// How many panels behind that of a unit force solve_halfway() reaches, at most over all unknowns.
 std::int32_t reach_of(const Band& S);
 
 }  // namespace railstep

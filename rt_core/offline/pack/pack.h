@@ -55,11 +55,11 @@ double first_force(const OuterForce& force);
 /// A rigid wheelset on both rails, as a scene gives it. Its treads are cylinders without friction.
 struct Wheelset {
   double mass = 0., inertia_roll = 0., inertia_spin = 0., inertia_yaw = 0.;  // kg, kg m2
-  double weight = 0.;               // N, down; of the wheelset and what it carries
-  double radius = kWheelRadius;     // m
-  double tread_half_width = .065;   // m
-  double start = 0., speed = 0.;    // m, m/s
-  std::vector<double> speeds = {};  // t (s), m/s, ...; empty: `speed`
+  double weight = 0.;                         // N, down; of the wheelset and what it carries
+  double radius = kWheelRadius;               // m
+  double tread_half_width = kTreadHalfWidth;  // m
+  double start = 0., speed = 0.;              // m, m/s
+  std::vector<double> speeds = {};            // t (s), m/s, ...; empty: `speed`
   Guide guide = Guide::augmented_lagrangian;
   int cap = 20;
   double tolerance = 1e-10;      // m, rad
@@ -114,10 +114,10 @@ struct RailIrregularity {
 
 /// The railhead that wheels meet.
 struct Railhead {
-  double top_z = 0.;               // of its middle above the axis, in the section, m
-  double crown_radius = .3;        // m
-  double half_width = .035;        // m; a contact beyond it is off the rail
-  double gauge_half_width = .035;  // m, at kGaugeDepth below the top
+  double top_z = 0.;                   // of its middle above the axis, in the section, m
+  double crown_radius = kCrownRadius;  // m
+  double half_width = .035;            // m; a contact beyond it is off the rail
+  double gauge_half_width = .035;      // m, at kGaugeDepth below the top
 };
 
 /// A sum over coordinates of a wheelset, or of a vehicle over one rail or in space.
@@ -290,8 +290,8 @@ class PackedModel {
                    const std::array<Railhead, 2>& heads);
   void add_runner(const Track& track, const RailVehicle& vehicle);
   /// Friction that falls over slip is a damper of negative rate. A step has one solution as long as
-  /// what contacts slip by a force of their own is below what the force falls by the slip. From
-  /// half of the way on under twice the mean wheel load it is refused.
+  /// the slip of contacts by a unit force, times the fall of the force by a unit of slip, is below
+  /// 1. Above 1/2, under twice the mean wheel load, the friction is refused.
   void refuse_steep_friction(const Track& track) const;
   /// Takes the tables that a pair points to into the model's own memory.
   void keep_profiles(ProfilePair& pair);

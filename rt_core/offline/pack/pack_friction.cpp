@@ -60,10 +60,10 @@ void PackedModel::refuse_steep_friction(const Track& track) const {
     const Eigen::Map<const Eigen::MatrixXd> all(runner.compliance, meets, meets);
     double slips = 0.;
     for (std::int32_t i = 0; i < runner.wheelsets; ++i)
-      slips = std::max(
-          slips, largest_slip(all.block(kMotions * i, kMotions * i, kMotions, kMotions),
-                              condensed ? 1. / (s.theta * s.dt) : s.kv, runner.wheelset[i].radius,
-                              runner.contact.half_distance, rails));
+      slips =
+          std::max(slips, largest_slip(all.block(kMotions * i, kMotions * i, kMotions, kMotions),
+                                       law_rate(model_), runner.wheelset[i].radius,
+                                       runner.contact.half_distance, rails));
     const double load = mean_load(runners_[static_cast<std::size_t>(r)].matrices, runner.wheelsets);
     const double falling = 2. * load * std::max(f.rail[0], f.rail[1]) * (1. - f.kinetic) / f.half;
     if (slips * falling <= .5) continue;

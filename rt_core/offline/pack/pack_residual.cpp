@@ -20,8 +20,7 @@ std::vector<std::vector<double>> places_of(const Model& model, std::size_t load_
     places[static_cast<std::size_t>(load_point)].push_back(place);
   };
   for (std::int32_t i = 0; i < model.loads; ++i) add(model.load[i].load_point, model.load[i].start);
-  for (ContactId i = 0; i < wheel_count(model); ++i)
-    add(model.contact[i].load_point, place_of(model, i));
+  for (const ContactId i : wheels(model)) add(model.contact[i].load_point, place_of(model, i));
   for (std::int32_t i = 0; i < model.external_wheels; ++i)
     add(model.external_wheel[i].load_point, 0.);  // their places are not known in advance
   return places;
@@ -122,7 +121,7 @@ void PackedModel::clip(int points, std::vector<double>& under) {
   if (wheel_count(model_) == 0) return;
   const StepCompliance compliance(model_, lines_);
   const std::size_t places = under.size() / load_points_.size();
-  for (std::int32_t wheel = 0; wheel < wheel_count(model_); ++wheel) {
+  for (const ContactId wheel : wheels(model_)) {
     const auto point = static_cast<std::size_t>(model_.contact[wheel].load_point);
     const std::vector<double> lines =
         compliance.table(load_points_[point], points, model_.residual.elements);

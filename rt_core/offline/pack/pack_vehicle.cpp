@@ -96,7 +96,7 @@ void PackedModel::add_vehicle(const Track& track, const RunningVehicle& vehicle,
   for (std::size_t i = 0; i < vehicle.vehicle.wheels.size(); ++i) {
     const Vehicle::Wheel& wheel = vehicle.vehicle.wheels[i];
     const auto row = static_cast<Eigen::Index>(i);
-    ContactModel& own = insert_contact(wheel_count(model_));
+    ContactModel& own = insert_contact(vehicle_contact(model_, model_.vehicle_wheels));
     ++model_.vehicle_wheels;
     own.kind = ContactKind::wheel;
     own.bodies = model_.vehicles;

@@ -100,7 +100,7 @@ void PackedModel::add_flange(const Track& track, const Wheelset& wheelset,
     const Railhead& head = heads[static_cast<std::size_t>(rail)];
     const double inward = rail == 0 ? -1. : 1.;
     const SectionPoint gauge = gauge_face(model_.cant[rail], head, inward * head.gauge_half_width);
-    insert_contact(contact_count(model_) + rail) = {
+    insert_contact(flange_contact(model_, flange_number(model_.flanges, rail))) = {
         ContactKind::flange, packed.wheelset, rail, law, kNoLoadPoint, {}, 0., nullptr, nullptr};
     packed.gauge[rail][0] = gauge.y;
     packed.gauge[rail][1] = gauge.z;

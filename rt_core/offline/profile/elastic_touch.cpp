@@ -152,13 +152,13 @@ class Loading {
                                           : std::max(wheel_.distance(place) - lowest, 0.);
     }
     StripPatch strips{gap, kStrips, 1. * before, {}, step, 1., modulus_};
-    strips.hold = hold_of(strips, upwards);
-    const WheelTouch mean =
-        wheel_.touch_at(deepest + step * (.5 * (strips.hold.first + strips.hold.second) - before));
+    strips.collocation = collocation_of(strips, upwards);
+    const WheelTouch mean = wheel_.touch_at(
+        deepest + step * (.5 * (strips.collocation.first + strips.collocation.second) - before));
     const double cosine = std::cos(mean.angle);          // along the wheel's profile
     const double normal = std::cos(mean.angle + roll_);  // of the normal to the upright
     for (double& own : gap) own *= normal;
-    strips.hold.gap *= normal;
+    strips.collocation.gap *= normal;
     strips.width /= cosine;
     strips.radius = (radius_ + mean.growth) / cosine;
     const double approach = normal * upwards;

@@ -1,6 +1,7 @@
 #pragma once
 #include <vector>
 
+#include "offline/math/constants.h"
 #include "offline/profile/wheel_rail.h"
 #include "online/patch/strip_patch.h"
 
@@ -8,7 +9,7 @@ namespace railstep {
 
 /// Two like elastic bodies.
 struct Elastic {
-  double young = 210e9, poisson = .3;  // Pa, 1; of steel
+  double young = kSteelYoung, poisson = kSteelPoisson;  // Pa, 1
 };
 
 /// A contact patch of a wheel.

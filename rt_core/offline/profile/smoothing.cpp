@@ -13,7 +13,7 @@ namespace railstep {
 namespace {
 
 constexpr double kGap = 5e-3;   // m
-constexpr double kTurn = .35;   // rad
+constexpr double kKink = .35;   // rad
 constexpr double kFarOff = 8.;  // tolerances
 
 using Sparse = Eigen::SparseMatrix<double>;
@@ -49,15 +49,15 @@ void check_points(std::span<const Point> points) {
 
 /// Turns of the chords at inner points, rad.
 void check_kinks(std::span<const Point> points) {
-  std::vector<double> turn(points.size(), 0.);
+  std::vector<double> kink(points.size(), 0.);
   const auto angle = [&](std::size_t i) {
     return std::atan2(points[i + 1][1] - points[i][1], points[i + 1][0] - points[i][0]);
   };
-  for (std::size_t i = 1; i + 1 < points.size(); ++i) turn[i] = std::abs(angle(i) - angle(i - 1));
+  for (std::size_t i = 1; i + 1 < points.size(); ++i) kink[i] = std::abs(angle(i) - angle(i - 1));
   for (std::size_t i = 1; i + 1 < points.size(); ++i) {
-    const double beside = .5 * (turn[i - 1] + turn[i + 1]);
-    if (turn[i] > kTurn && turn[i] > 4. * beside)
-      refuse("E-POINTS-05", "the points turn by " + std::to_string(turn[i]) + " rad at " +
+    const double beside = .5 * (kink[i - 1] + kink[i + 1]);
+    if (kink[i] > kKink && kink[i] > 4. * beside)
+      refuse("E-POINTS-05", "the points turn by " + std::to_string(kink[i]) + " rad at " +
                                 place_of(points[i]) + "; expected a surface without a kink");
   }
 }

@@ -13,11 +13,11 @@ struct SmoothedPoints {
   double rms, largest;  // m, of the distances from the points
 };
 
-/// Smooths points along the line that they make. It takes the least integral of the squared second
-/// derivative, over the length of the chords, among those lines whose distances from the points
-/// have a root mean square of `tolerance`, those along the line included: C. H. Reinsch, Smoothing
-/// by spline functions, Numerische Mathematik 10, 1967. So steep sides are smoothed as the crown
-/// is. 0 leaves the points; a tolerance above that of a straight line gives that line.
+/// Smooths points along the line that they make. Among the lines whose distances from the points,
+/// those along the line included, have a root mean square of `tolerance`, it takes the one with the
+/// least integral of the squared second derivative over the length of the chords: C. H. Reinsch,
+/// Smoothing by spline functions, Numerische Mathematik 10, 1967. So steep sides are smoothed as
+/// the crown is. 0 leaves the points; a tolerance above that of a straight line gives that line.
 /// @param points  (y, height), m, one beside the other
 /// Throws Refused for fewer than 4 points, values that are not finite, a point that is given twice,
 /// a gap (over 5 mm and over 5 times the middle spacing), a kink (a turn of over 0.35 rad and over

@@ -20,7 +20,7 @@ BendingBeam bending_beam(const Track& track, BeamTheory theory);
 /// Dynamic stiffness of a beam between its ends over [w, theta] at x = 0 and at x = length, w up,
 /// theta = w' without shear; N/m, N, N m. Exact: of the four waves e^(kappa x) with
 /// EI kappa^4 + (EI b + rho I omega^2) kappa^2 + (rho I b - m) omega^2 = 0, b = m omega^2/(k_z G
-/// A), theta = (kappa + b/kappa) w, each counted from the end it falls off from.
+/// A), theta = (kappa + b/kappa) w, each counted from the end from which it decays.
 /// @param omega  rad/s, above 0
 Eigen::Matrix4cd beam_dynamic_stiffness(const BendingBeam& beam, double length, double omega);
 

@@ -35,13 +35,13 @@ struct DecayRate {
   ThirdOctave band;
   double rate;     // dB/m
   double drop_db;  // of the response at the last position under that at the first
-  /// Clause 7 and 6.7: twice Formula 2's 4.343/x_max at least, and 10 dB down at the last position.
-  /// Else the track is too short for it, and the rate an upper bound.
+  /// Clause 7 and 6.7: the rate is at least twice Formula 2's 4.343/x_max, and the response is 10
+  /// dB down at the last position. Otherwise the track is too short, and the rate is an upper
+  /// bound.
   bool suitable;
 };
 
-/// Positions along the rail from a point on that are on it, m from the point; towards the end that
-/// is farther away.
+/// Positions on the rail from a point on towards the farther end, m from the point.
 std::vector<double> decay_distances(const Track& track, double x);
 
 /// @param along  the driving point first, then the other positions; vertical or lateral

@@ -12,10 +12,10 @@ struct Reflection {
   double back;   // amplitude that returns over amplitude that arrives, at the end's zone
 };
 
-/// Reflection at the far end of one line of a track, by the line's own matrices: bays far from the
-/// end are joined without end to the dynamic stiffness Z of an endless track, seen by its border
-/// nodes (a half seat at each border), the bays of the zone to that of the end, Z_e. Displacements
-/// u that arrive and v that go back have one sum and forces that balance,
+/// Reflection at the far end of one line of a track, by the line's own matrices. Bays far from the
+/// end, joined without end, make the dynamic stiffness Z of an endless track at its border nodes (a
+/// half seat at each border). The bays of the zone make that of the end, Z_e. Displacements u that
+/// arrive and v that go back add up, and their forces balance,
 ///   (Z_e + S Z S) v = (Z - Z_e) u,   S the mirror along x,
 /// and the waves are the eigenvectors of the map of u over one bay. The wave that a point force
 /// sends farthest is taken.

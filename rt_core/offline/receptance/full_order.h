@@ -12,8 +12,8 @@ namespace railstep {
 /// point forces inside them (residual_statics()).
 class FullOrderReceptance : public Receptance {
  public:
-  /// @param residual  false leaves out this error Throws Refused on an invalid track and on points
-  /// off it.
+  /// @param residual  false leaves out this error
+  /// Throws Refused on an invalid track and on points off it.
   FullOrderReceptance(const Track& track, const Transfer& transfer, bool residual = true);
   Eigen::VectorXcd at(double hz) override;
 

@@ -15,11 +15,11 @@ struct ExpectedResonance {
   double within;  // farthest ratio of frequencies at which an extremum is still taken for it
 };
 
-/// Rail of one bay on the pad, half a sleeper on the ballast: both in phase ("track on ballast"),
-/// the sleeper as an absorber under a held rail ("sleeper anti-resonance", a dip), against each
-/// other
-/// ("rail on pads"); or the rail on its supports where no sleeper has mass. And half a Timoshenko
-/// wave between two seats ("pinned-pinned"): a peak nearer to the middle of a bay, else a dip.
+/// Rail of one bay on the pad, half a sleeper on the ballast. Both move in phase ("track on
+/// ballast"), the sleeper is an absorber under a held rail ("sleeper anti-resonance", a dip), or
+/// both move against each other ("rail on pads"). Where no sleeper has mass the rail moves on its
+/// supports. Half a Timoshenko wave fits between two seats ("pinned-pinned"): a peak if the point
+/// is nearer to the middle of a bay, else a dip.
 /// @param x  of the driving point, m
 std::vector<ExpectedResonance> expected_resonances(const Track& track, double x);
 

@@ -9,8 +9,8 @@ struct WheelSlopes {
   double by_motion[7][4], by_rate[7][6], by_section[7], by_section_rate[7];
 };
 
-/// force_on_wheel() with all derivatives on rails that stand still: exact ones of cones; of
-/// profiles differences to both sides, with all that moves along the profiles.
+/// force_on_wheel() with all derivatives on rails that stand still. By cones they are exact; by
+/// profiles they are central differences, with all that moves along the profiles.
 /// @param side  1 of the left wheel, -1 of the right
 /// @param v     [6] rates of the wheelset's motions
 WheelForce force_on_wheel(const RollingContact& c, double radius, double side,

@@ -3,6 +3,7 @@
 #include <Eigen/Dense>
 #include <cmath>
 
+#include "offline/math/hertz_depth.h"
 #include "offline/math/refuse.h"
 #include "offline/runner/rolling_slopes.h"
 
@@ -80,7 +81,7 @@ double sunk(const Runner& runner, const RunnerMatrices& m, const RollingContact&
     weight -= m.rest[first_of(b) + index_of(BodyMotion::z)];
     wheels += runner.bodies[b].is_wheelset() ? 2. : 0.;
   }
-  return std::pow(weight / wheels / contact.hertz, 2. / 3.);
+  return hertz_depth(weight / wheels, contact.hertz);
 }
 
 /// The vehicle sunk into its contacts, each wheelset in the middle of its rails.

@@ -12,7 +12,7 @@ struct RunningMode {
   double damping_ratio;  // -Re s / |s|
 };
 
-/// All modes above 0.01 Hz, the lowest first; below are the motions that nothing holds.
+/// All modes above 0.01 Hz, the lowest first; modes below are motions that nothing holds.
 std::vector<RunningMode> running_modes(const LinearRunning& linear);
 
 struct CriticalRunning {
@@ -20,9 +20,9 @@ struct CriticalRunning {
   double frequency;  // of the mode whose damping is 0 there, Hz
 };
 
-/// The least speed of a range at which a mode is no longer damped, to 1e-10 of itself. Speeds are
-/// looked at in steps of 2 m/s and of a hundredth of the range at most, so that two crossings
-/// within a step are missed.
+/// The least speed of a range at which a mode is no longer damped, to a relative 1e-10. The search
+/// takes steps of at most 2 m/s and at most a hundredth of the range, so that it misses two
+/// crossings within a step.
 /// @returns nothing if all modes are damped over the range, or one is not at its start
 std::optional<CriticalRunning> critical_running_speed(const Runner& runner,
                                                       const RunnerMatrices& matrices,

@@ -45,9 +45,9 @@ RunnerMatrices runner_matrices(const Runner& runner, double gravity);
 /// Elongation of an element along a line over the coordinates of its vehicle, [n].
 Eigen::VectorXd elongation(const Runner& runner, const RunnerElement& element);
 
-/// Gives the elements whose preload is 0 in all entries the force that they carry where the
-/// vehicle stands under its weight with its wheelsets held: of linear springs without geometric
-/// stiffness, and of least energy where springs alone do not decide.
+/// Gives the elements whose preload is 0 in all entries the force that they carry where the vehicle
+/// stands under its weight with its wheelsets held. Springs are linear, without geometric
+/// stiffness; where springs alone do not decide, the energy is least.
 /// Throws Refused where the preloads then do not carry the weight of a body.
 void balance_preloads(Runner& runner, double gravity);
 

@@ -115,6 +115,12 @@ VectorXd solve_even(const Discrete& d, const VectorXd& load) {
   return solve_fixed(d.K, fixed, load);
 }
 
+/// Lower and upper bound of the torsion constant: Prandtl's stress function can only be too soft,
+/// the warping function only too stiff.
+struct TorsionBounds {
+  double lower, upper;  // J of the scaled section
+};
+
 /// Bounds of the whole section from its half: the mirror image adds the same again.
 TorsionBounds bounds(const Discrete& d, const VectorXd& warping) {
   const VectorXd stress = solve_fixed(d.K, d.mesh.on_outline, d.stress_load);
@@ -224,17 +230,6 @@ SaintVenant saint_venant(const std::vector<std::array<double, 2>>& polygon, doub
 Twist twist(const std::vector<std::array<double, 2>>& polygon) {
   const ScaledWhole whole = scale_whole(polygon);
   return refined([&](double size) { return solve_whole(whole, size); });
-}
-
-TorsionBounds torsion_bounds(const std::vector<std::array<double, 2>>& polygon, double size) {
-  if (!(size > 0.0 && size <= 1.0))
-    refuse("E-SECTION-26",
-           "the triangle size is " + std::to_string(size) + "; expected above 0, at most 1");
-  const ScaledHalf half = scale(polygon);
-  const Discrete d = discretise(mesh_half(half.outline, size));
-  const TorsionBounds J = bounds(d, solve_odd(d, d.warping_load));
-  const double unit4 = std::pow(half.unit, 4);
-  return {J.lower * unit4, J.upper * unit4};
 }
 
 }  // namespace railstep

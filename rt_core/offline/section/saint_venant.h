@@ -17,13 +17,6 @@ struct NoShearFactor : Refused {
                 "0, which makes it the factor of the shear energy, or give the shear factors") {}
 };
 
-/// Lower and upper bound of the torsion constant: Prandtl's stress function can only be too soft,
-/// the warping function only too stiff.
-struct TorsionBounds {
-  double lower;  // J, m4
-  double upper;  // J, m4
-};
-
 /// Saint-Venant torsion and flexure of a solid section, by quadratic finite elements on its right
 /// half. Heights are above the polygon's lowest point, the foot.
 ///
@@ -63,10 +56,5 @@ struct Twist {
 /// There are no shear factors, because Cowper's hold for forces along an axis of symmetry.
 /// @throws Refused as saint_venant, except for the symmetry
 Twist twist(const std::vector<std::array<double, 2>>& polygon);
-
-/// The two bounds of J from a mesh whose triangles are at most `size` times sqrt(A) wide, finer at
-/// re-entrant corners; to show convergence and to check saint_venant.
-/// @throws Refused as saint_venant, and when size is not in (0, 1]
-TorsionBounds torsion_bounds(const std::vector<std::array<double, 2>>& polygon, double size);
 
 }  // namespace railstep

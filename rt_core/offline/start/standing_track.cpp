@@ -64,7 +64,7 @@ Eigen::SparseMatrix<double> loaded_stiffness(const Model& model, const Line& lin
   for (std::size_t wheel = 0; wheel < seats.place.size(); ++wheel) {
     const RailForce& at = seats.place[wheel];
     RailRow row{};
-    row.rail = static_cast<std::int32_t>(wheel % 2);
+    row.rail = wheel_of(static_cast<std::int32_t>(wheel)).side;
     row.element = at.element;
     const SeatLevers around = seat_levers(model, row.rail, at.element, at.xi);
     row.seats = 1;
@@ -150,8 +150,8 @@ class MeanResponse {
 void add_leans(const Model& model, const RunnerModel& runner, const State& start,
                StandingTrack& track) {
   for (int wheel = 0; wheel < 2 * runner.wheelsets; ++wheel) {
-    const int side = wheel % 2;
-    const double q = wheel_force_of(start, runner.first_wheelset + wheel / 2, side)[2];
+    const auto [set, side] = wheel_of(wheel);
+    const double q = wheel_force_of(start, runner.first_wheelset + set, side)[2];
     const Index roll = kWheelSeatRows * wheel + 2;
     track.stiffness(roll, roll) -= q * seat_lean(model, runner.contact, side, 1.).lean;
   }
@@ -171,13 +171,14 @@ std::vector<RailsUnder> places_of(const Model& model, const RunnerModel& runner,
   const int wheels = 2 * runner.wheelsets;
   std::vector<RailsUnder> places(static_cast<std::size_t>(runner.wheelsets));
   for (int wheel = 0; wheel < wheels; ++wheel) {
-    RailsUnder& under = places[static_cast<std::size_t>(wheel / 2)];
-    const double* const force = wheel_force_of(start, runner.first_wheelset + wheel / 2, wheel % 2);
-    const SeatFlexibility gives = seat_flexibility_beside(
-        model, runner, wheel % 2, seats.place[static_cast<std::size_t>(wheel)]);
-    under.y[wheel % 2] = moved(kWheelSeatRows * wheel) + moved_by_wheel(gives.along[0], force);
-    under.z[wheel % 2] = moved(kWheelSeatRows * wheel + 1) + moved_by_wheel(gives.along[1], force) +
-                         residual_displacement(model, seats.place.data(), wheels, wheel);
+    const auto [set, side] = wheel_of(wheel);
+    RailsUnder& under = places[static_cast<std::size_t>(set)];
+    const double* const force = wheel_force_of(start, runner.first_wheelset + set, side);
+    const SeatFlexibility gives =
+        seat_flexibility_beside(model, runner, side, seats.place[static_cast<std::size_t>(wheel)]);
+    under.y[side] = moved(kWheelSeatRows * wheel) + moved_by_wheel(gives.along[0], force);
+    under.z[side] = moved(kWheelSeatRows * wheel + 1) + moved_by_wheel(gives.along[1], force) +
+                    residual_displacement(model, seats.place.data(), wheels, wheel);
   }
   return places;
 }
@@ -202,7 +203,7 @@ RunningOn rails_at_rest(const PackedModel& packed, const Track& track, std::int3
     of_seats.reserve(seats.place.size());
     for (int wheel = 0; wheel < 2 * own.wheelsets; ++wheel)
       of_seats.push_back(
-          missed.under(runner, wheel % 2, seats.place[static_cast<std::size_t>(wheel)]));
+          missed.under(runner, wheel_of(wheel).side, seats.place[static_cast<std::size_t>(wheel)]));
     response.add(model, lines,
                  {std::move(seats), std::move(of_seats), ahead, std::move(behind), apart});
     behind = std::move(ahead);

@@ -174,7 +174,7 @@ Pose passing(const Statics& statics, const PackedModel& packed, double gravity, 
   if (leans(model)) return equilibrium(statics, packed, gravity, time, beside);
   Acting acting = loads_at(statics, packed, time, beside);
   const std::size_t loads = acting.forces.size();
-  for (ContactId i = 0; i < tread_count(model); ++i) {
+  for (const ContactId i : treads(model)) {
     const WheelsetModel& w = model.wheelset[model.contact[i].bodies];
     const std::int32_t load_point = model.contact[i].load_point;
     const double x = w.start + travelled(w.travel, 0.).speed * time;
@@ -248,8 +248,7 @@ std::vector<StartingPlace> starting_places(const Model& model) {
   };
   for (std::int32_t i = 0; i < model.loads; ++i)
     add(place(model, model.load[i], 0).place, model.load[i].travel);
-  for (ContactId i = 0; i < wheel_count(model); ++i)
-    add(place_of(model, i), bodies_of(model, i).travel);
+  for (const ContactId i : wheels(model)) add(place_of(model, i), bodies_of(model, i).travel);
   for (std::int32_t r = 0; r < model.runners; ++r)
     for (std::int32_t i = 0; i < model.runner[r].wheelsets; ++i)
       all.push_back({model.runner[r].start + model.runner[r].wheelset[i].place,

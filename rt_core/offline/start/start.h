@@ -23,8 +23,8 @@ std::vector<double> start_in_equilibrium(const Track& track, const PackedModel& 
                                          const std::vector<double>& rate = {});
 
 /// Forces of all wheels over the unknowns of each line of the model, in the equilibrium at t = 0
-/// and where they are `time` later. Of condensed lines the forces of all that presses but `beside`,
-/// as far as their modes take them: they move full lines as they move the modes.
+/// and where they are `time` later. On condensed lines these are the forces of all that presses but
+/// `beside`, as far as the modes take them: they move full lines as they move the modes.
 /// Throws Refused as start_in_equilibrium().
 std::vector<Eigen::VectorXd> standing_line_forces(const Track& track, const PackedModel& packed,
                                                   double gravity, const Acting& beside,

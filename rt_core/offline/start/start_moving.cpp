@@ -37,7 +37,7 @@ std::vector<double> static_forces(const Model& model) {
 }
 
 /// A wheel as a force.
-LoadModel load_of(const Model& model, int wheel, double force) {
+LoadModel load_of(const Model& model, ContactId wheel, double force) {
   const ContactModel& own = model.contact[wheel];
   const std::int32_t rail = own.rail;
   LoadModel load{};
@@ -75,7 +75,7 @@ Model evened(const Model& model) {
     load.stop = std::numeric_limits<double>::infinity();
   }
   for (std::int32_t b = 0; b < even.wheelsets; ++b) keep_vertical_forces(even.wheelset[b]);
-  for (ContactId i = 0; i < contact_count(even); ++i) even.contact[i].tread = {};
+  for (const ContactId i : contacts(even)) even.contact[i].tread = {};
   return even;
 }
 
@@ -89,7 +89,7 @@ Model with_forces(const Model& even) {
                              "; expected fewer, or step.start = \"equilibrium\"");
   int wheel = 0;
   for (const double force : static_forces(even))
-    carried.load[carried.loads++] = load_of(even, wheel++, force);
+    carried.load[carried.loads++] = load_of(even, {wheel++}, force);
   carried.wheelsets = carried.flanges = carried.vehicles = carried.vehicle_wheels = 0;
   return carried;
 }

@@ -69,11 +69,11 @@ void follow_alignment(const PackedRunner& own, const Model& model, const RunnerM
     given[first + index_of(BodyMotion::yaw)] = rolling_yaw(model, runner, i, time);
   }
   // Bump stops may begin to press, or let go.
-  constexpr int kTurns = 20;
+  constexpr int kIterations = 20;
   const Eigen::VectorXd before = steady.displacement, held = stop_forces(own.matrices, before);
   Eigen::VectorXd moved = given, more = Eigen::VectorXd::Zero(own.matrices.rods.cols());
   const Eigen::Index rods = own.matrices.rods.cols();
-  for (int turn = 0; turn < kTurns; ++turn) {
+  for (int iteration = 0; iteration < kIterations; ++iteration) {
     Eigen::MatrixXd K = Eigen::MatrixXd::Zero(n + rods, n + rods);
     K.topLeftCorner(n, n) = stiffness_at(own.matrices, before + moved);
     K.topRightCorner(n, rods) = own.matrices.rods;

@@ -20,9 +20,9 @@ SettledRunners runners_on_even_rails(const PackedModel& packed);
 void add_forces(const PackedModel& packed, const SettledRunners& runners, const Configuration& at,
                 double time, Acting& acting);
 
-/// Rail vehicles on rails as they lie. Rails that are not even in height are stood on; along y each
-/// wheelset goes with its rails, at the yaw at which it rolls along them, and the other bodies
-/// follow as their springs demand.
+/// Rail vehicles on rails as they lie. The vehicles stand on rails that are uneven in height. Along
+/// y each wheelset goes with its rails, at the yaw at which it rolls along them, and the springs
+/// make the other bodies follow.
 /// @param acting  with add_forces() of the runners `pressing`, from its port `first_port` on
 SettledRunners settle_runners(const PackedModel& packed, const SettledRunners& pressing,
                               const Configuration& at, double time, const Acting& acting,

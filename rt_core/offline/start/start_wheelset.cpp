@@ -83,7 +83,7 @@ void check_sides(const Model& model) {
 Stance stance_of(const Model& model, std::int32_t b, const Configuration& at) {
   const WheelsetModel& w = model.wheelset[b];
   const double aside = side_force(w);
-  Stance stance{2, {tread_of(b, 0), tread_of(b, 1), -1}, {}, {}};
+  Stance stance{2, {tread_of(b, 0), tread_of(b, 1), {-1}}, {}, {}};
   find_contacts(model, b, at, stance.contact.data());
   if (aside != 0.) {
     const int side = aside > 0. ? 0 : 1;

@@ -26,7 +26,7 @@ std::array<double, 6> standing_wheelset(const Model& model, std::int32_t wheelse
 /// force leans it on a flange, this is a third contact, and y depends on it too.
 struct Stance {
   int count;                                          // of contacts: 2 or 3
-  std::array<std::int32_t, 3> number;                 // among the model's contacts
+  std::array<ContactId, 3> number;                    // among the model's contacts
   std::array<WheelContact, 3> contact;                // as the step finds them
   Eigen::VectorXd force;                              // [count] N
   int first_coordinate() const { return 4 - count; }  // of the dependent ones, up to roll

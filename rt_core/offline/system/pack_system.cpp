@@ -185,7 +185,7 @@ PackedSystem::PackedSystem(const System& system, const SystemOptions& options, c
 Rest PackedSystem::rest_on_track(const System& system, const SystemOptions& options,
                                  const Track& track, const Traffic& traffic,
                                  const PackOptions& track_options) {
-  constexpr int kMostTurns = 30;
+  constexpr int kMostPasses = 30;
   constexpr double kSettled = 1e-10;  // of the largest force
   PackedModel& packed = *memory_->track;
   const bool wheels = has_wheels(packed.model());
@@ -195,7 +195,7 @@ Rest PackedSystem::rest_on_track(const System& system, const SystemOptions& opti
   std::vector<double> before;
   std::vector<Eigen::VectorXd> pressing;  // forces of the wheels, at a shift in time
   double pressing_at = 0.;
-  for (int turn = 0; turn < kMostTurns; ++turn) {
+  for (int pass = 0; pass < kMostPasses; ++pass) {
     pressing.clear();
     Rest rest = find_rest(
         [&](double dt, double shift) {

@@ -83,8 +83,8 @@ struct Track {
   double cant = 0.;
   RailEnds ends = {RailEnd::free, RailEnd::free};
   int end_zone_bays = kEndZoneBays;  // damped bays before each non-reflecting end
-  /// The last bay border is the first: a track without ends, whatever runs on it runs round. Its
-  /// seats are alike, its pads points; x goes from 0 to length() all the same.
+  /// The last bay border is the first: a track without ends, on which traffic runs round. Its seats
+  /// are alike, and its pads are points; x still goes from 0 to length().
   bool ring = false;
   /// The rails do not give way: the track has no lines, and only its lengths, section and cant
   /// count.
@@ -159,9 +159,9 @@ struct RailPoint {
 /// unknowns of its element, in the rail's own axes.
 Vector27 rail_row(const Cant& cant, double xi, double y, double z, int direction);
 
-/// Motions of a rigid sleeper, in the order of a line's table of unknowns; then, of the ballast
-/// under its left and its right end (in mirror coordinates the left one stands for both), how far
-/// what relaxes is compressed along z, and turned about y.
+/// Motions of a rigid sleeper, in the order of a line's table of unknowns; then, for the ballast
+/// under its left and its right end (in mirror coordinates the left one stands for both), the
+/// compression along z of the part that relaxes, and its turn about y.
 enum SleeperMotion {
   kAlongX,
   kAlongY,
@@ -190,8 +190,8 @@ struct Line {
   Eigen::SparseMatrix<double> mass, damping, stiffness;  // symmetric, both triangles stored
   Eigen::SparseMatrix<double> end_damping;  // the part of damping in the zones at the ends
   std::array<RailUnknowns, 2> unknown_of;  // of left and right rail; the same in mirror coordinates
-  /// The unknowns of the end ahead, which begins the next element, by the node where a rail is cut;
-  /// for each rail; those of the end behind are the node's own.
+  /// Where a rail is cut: the unknowns of the end ahead, which begins the next element, by node and
+  /// for each rail. Those of the end behind are the node's own.
   std::array<std::map<int, std::array<int, 9>>, 2> cuts;
   /// [seats] of each SleeperMotion, scaled: the ends' mean displacement, or half their difference,
   /// times sqrt 2 (of one rail, its end's displacement); -1 where held or on another line.

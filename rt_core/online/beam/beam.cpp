@@ -115,19 +115,6 @@ void add_nodal_tangent(const BeamPoint& p, const double K[kComponents][kComponen
 
 }  // namespace
 
-double beam_energy(const Beam& beam, const double* q) noexcept {
-  double energy = 0.;
-  for (int g = 0; g < beam.points; ++g) {
-    const BeamPoint& p = beam.point[g];
-    double V[kVectors][3], s[kProducts], stress[kProducts];
-    vectors(p, q, V);
-    strains(p, V, s);
-    stresses(p, s, stress);
-    for (int k = 0; k < kProducts; ++k) energy += .5 * (p.preload[k] + stress[k]) * s[k];
-  }
-  return energy;
-}
-
 void beam_force(const Beam& beam, const double* q, double* force) noexcept {
   for (int i = 0; i < kBeamUnknowns; ++i) force[i] = 0.;
   for (int g = 0; g < beam.points; ++g) {

@@ -32,12 +32,9 @@ struct Beam {
   BeamPoint point[kMostBeamPoints];
 };
 
-/// Strain energy, J, at rest 0. The written order of sums is the same on every machine.
-/// @param q  [27]
-double beam_energy(const Beam& beam, const double* q) noexcept;
-
 /// Q = dU/dq, elastic force of one element: Eq. 18 with its misprints mended (the
-/// symmetric half of the strain, the factor 2 on shears; docs/errata.md).
+/// symmetric half of the strain, the factor 2 on shears; docs/errata.md). The written order of sums
+/// is the same on every machine.
 /// @param q      [27]
 /// @param force  [27], overwritten; N for r, N m for slopes; must not alias q
 /// Cannot fail: NaN in, NaN out. Same work for every q.

@@ -38,7 +38,7 @@ void add_mass(const Chain& chain, double mass_factor, double* S) noexcept {
 
 /// Row and column of an unknown of an element's node become those of the identity.
 template <int W>
-void hold(double* S, int node, int unknown) noexcept {
+void fix(double* S, int node, int unknown) noexcept {
   using At = Layout<W>;
   for (int other = 0; other < 3; ++other) {
     const int m = node < other ? node : other, n = node < other ? other : node;
@@ -52,11 +52,11 @@ void hold(double* S, int node, int unknown) noexcept {
 }
 
 template <int W>
-void hold_all(const Chain& chain, double* S) noexcept {
+void fix_all(const Chain& chain, double* S) noexcept {
   const auto in_element = [&](int element, int node, int unknown) {
     if (element < 0 || element >= chain.elements) return;
-    hold<W>(S + element / kStraightLanes * Layout<W>::kTangents + element % kStraightLanes, node,
-            unknown);
+    fix<W>(S + element / kStraightLanes * Layout<W>::kTangents + element % kStraightLanes, node,
+           unknown);
   };
   for (int h = 0; h < chain.held_count; ++h) {
     const int node = chain.held[h] / W, unknown = chain.held[h] % W;
@@ -106,7 +106,7 @@ int chain_factor(const Chain& chain, double mass_factor, double k_factor, double
     for (long i = 0; i < groups * At::kTangents; ++i) tangents[i] = 0.;
   for (int group = 0; group < groups; ++group)
     add_mass<W>(chain, mass_factor * inverse_k, tangents + group * At::kTangents);
-  hold_all<W>(chain, tangents);
+  fix_all<W>(chain, tangents);
 
   double* nodes = factor + At::nodes(chain.elements);
   EndNodes<W> ends(nodes, inverse_k);

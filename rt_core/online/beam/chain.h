@@ -37,7 +37,7 @@ constexpr std::int64_t chain_factor_doubles(int elements) noexcept {
 
 /// force += M g, the consistent mass of Eq. 12: P (x) Q (x) I of each element, P[i][j] the integral
 /// of N_i N_j over its length, Q the section's, of [r, a, b].
-/// @param g, force  [2n + 1][W]; no alias. Held unknowns are no exception.
+/// @param g, force  [2n + 1][W]; no alias. Held unknowns count too.
 template <int W>
 void chain_inertia(const Chain& chain, const double* g, double* force) noexcept;
 
@@ -49,7 +49,7 @@ void chain_inertia(const Chain& chain, const double* g, double* force) noexcept;
 /// @param tangents     [chain_tangent_doubles<W>(n)], overwritten with nothing of use
 /// @param factor       [chain_factor_doubles<W>(n)], overwritten; no alias
 /// @returns how many of D's numbers are not above 0: for a regular S as many as it has eigenvalues
-///          below 0. The factor is made all the same; an exact 0 or a NaN spoils it.
+///          below 0. The factor is made in any case; an exact 0 or a NaN makes it useless.
 template <int W>
 [[nodiscard]] int chain_factor(const Chain& chain, double mass_factor, double k_factor,
                                double* tangents, double* factor) noexcept;

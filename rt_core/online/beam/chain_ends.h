@@ -79,9 +79,9 @@ template <int kVectors>
   });
 }
 
-/// Rows of a node become those of L, kVectors of each: all of the row, or of the last node its own.
-/// Each row loses first what the node before takes, then what the rows above take, so that the
-/// wait for a row's pivot is filled with the work of the rows below.
+/// Turns the rows of a node into those of L, kVectors of each: all of the row, or for the last node
+/// its own columns. Each row loses first what the node before takes, then what the rows above take,
+/// so that the wait for a row's pivot is filled with the work of the rows below.
 /// @param before  D L' of the node before, whose rows of L are kNode doubles before; with kBefore
 /// @param D       D L' of this node, overwritten
 /// @returns how many pivots are not above 0

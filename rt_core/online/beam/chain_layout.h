@@ -31,7 +31,7 @@ struct Layout {
   static constexpr long nodes(int elements) noexcept { return straight_groups(elements) * kMids; }
 };
 
-/// Fields r, a, b of a node: in which one is an unknown.
+/// The field of a node, r, a or b, that has an unknown.
 template <int W>
 constexpr int field_of(int unknown) noexcept {
   using Kind = std::conditional_t<W == 9, straight::Spatial, straight::Planar>;

@@ -100,7 +100,8 @@ struct MidLanes {
     });
   }
 
-  /// A block of S of the end nodes, in parts of 3 x 3, a symmetric one above its diagonal.
+  /// A block of S of the end nodes, in parts of 3 x 3. A symmetric block has only the parts on and
+  /// above its diagonal.
   template <int kPair>
   void condense_block() const noexcept {
     constexpr int parts = (W + 2) / 3;

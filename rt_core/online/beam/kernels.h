@@ -22,18 +22,19 @@ struct Kernels {
 /// Those functions themselves: for every processor that the library is built for.
 extern const Kernels kBaseKernels;
 
-// In vectors of four, to be called where the processor has AVX2. There are none where all is built
-// for such vectors, and where RAILSTEP_NO_AVX2 asks for none.
+// Functions in vectors of four, for processors that have AVX2. They do not exist if the whole
+// library is built for such vectors, or if RAILSTEP_NO_AVX2 is defined.
 #if defined(__x86_64__) && !defined(__AVX__) && !defined(RAILSTEP_NO_AVX2)
 #define RAILSTEP_HAS_AVX2_KERNELS
 extern const Kernels kAvx2Kernels;
 #endif
 
-/// The set that beams are stepped with: the quickest that the processor has, or what was asked for.
+/// The set that beams are stepped with: the quickest for the processor, or the one that was asked
+/// for.
 const Kernels& kernels_in_use() noexcept;
 
-/// Asks for a set, for all models from now on; null: what the processor has. For comparisons, and
-/// not while another thread steps.
+/// Asks for a set, for all models from now on; null: the quickest for the processor. For
+/// comparisons, and not while another thread steps.
 void use_kernels(const Kernels* set) noexcept;
 
 }  // namespace railstep

@@ -8,14 +8,14 @@ namespace RAILSTEP_KERNELS::straight {
 
 static_assert(kStraightLanes % kWide == 0);
 
-/// Elements `first` and on as lanes; after the last one, the last again.
+/// Elements from `first` on as lanes; lanes after the last element repeat it.
 struct Group {
   int first, count;  // of the batch
   int element(int lane) const noexcept { return first + lane < count ? first + lane : count - 1; }
 };
 
-/// Where part `part` of N numbers begins, kWide each; the last one takes some again that are not
-/// its own, instead of any behind them.
+/// Where part `part` of N numbers begins, kWide numbers in each. The last part begins early enough
+/// to end with the last number, and so repeats some of the part before.
 template <int N>
 constexpr int part_first(int part) noexcept {
   return kWide * (part + 1) <= N ? kWide * part : N - kWide;

@@ -51,7 +51,7 @@ constexpr int vector_first(int vector) noexcept {
 template <class Kind>
 inline constexpr int kComponentsOf = vector_first<Kind>(kVectors);
 
-/// True of vectors along the same axes; the product of others is 0 in every motion. Sizes tell the
+/// True for vectors along the same axes; the product of others is 0 in every motion. Sizes tell the
 /// axes: in the plane 2 is x and z, 1 is y.
 template <class Kind>
 constexpr bool along_same(int i, int j) noexcept {

@@ -65,7 +65,7 @@ void free_vehicles(const Model& model, double time, const State& s, Workspace& w
 
 void find_contact_laws(const Model& model, double time, const State& s, const Workspace& w,
                        Coupling& c) noexcept {
-  for (ContactId i = 0; i < c.contacts; ++i) {
+  for (const ContactId i : contacts(c)) {
     const ContactLaw& law = model.contact[i].law;
     const bool pulls = is_upright(model, i) && law.hertz == 0.;
     c.law[i] = {law.hertz, law.stiffness, 0., pulls};
@@ -86,7 +86,7 @@ double body_compliance(const Model& model, const Coupling& c, ContactId i, Conta
 void move_bodies(const Model& model, const Coupling& c, Workspace& w) noexcept {
   double* const change = w.scaled;
   const auto for_each = [&](const auto& visit) noexcept {
-    for (ContactId i = 0; i < c.contacts; ++i) {
+    for (const ContactId i : contacts(c)) {
       const SuspendedModel& own = bodies_of(model, i);
       for (int k = 0; k < own.size; ++k) visit(i, k, own.first + k);
     }

@@ -48,7 +48,7 @@ void locate_contacts(const Model& model, const Stage& stage, const State& s, Wor
   for (std::int32_t b = 0; b < model.wheelsets; ++b)
     locate_wheelset(model, b, located_on(model, s, w), later * s.v[model.wheelset[b].first], c);
   place_vehicle_wheels(model, stage.step, stage.before + (stage.span - ahead), c.contact, later);
-  for (ContactId i = 0; i < c.contacts; ++i)
+  for (const ContactId i : contacts(c))
     c.place[i] = {model, model.contact[i].load_point, c.contact[i].row.element, c.contact[i].xi,
                   0.};
   locate_wheel_seats(model, stage, s, w, c);
@@ -56,7 +56,7 @@ void locate_contacts(const Model& model, const Stage& stage, const State& s, Wor
 
 /// Coupling::rail_depth of all contacts. The rails must have been located.
 void find_rail_depths(const Model& model, const Workspace& w, Coupling& c) noexcept {
-  for (ContactId i = 0; i < c.contacts; ++i)
+  for (const ContactId i : contacts(c))
     c.rail_depth[i] = is_upright(model, i)
                           ? c.located[i] + c.contact[i].irregularity
                           : c.contact[i].penetration + lift_by(model, c, i, w.scaled);
@@ -85,7 +85,7 @@ void compliance(const Model& model, const Workspace& w, Coupling& c) noexcept {
     for (int j = 0; j <= i; ++j) {
       // Bodies of runners are coordinates of their own.
       const bool of_contacts = i < c.contacts;
-      const double body = of_contacts ? body_compliance(model, c, i, j) : 0.;
+      const double body = of_contacts ? body_compliance(model, c, {i}, {j}) : 0.;
       double sum = 0.;
       if (is_on_rail(c, i) && is_on_rail(c, j))
         sum = model.scheme.theta * (c.W[i * c.ports + j] + body) +
@@ -103,7 +103,7 @@ void compliance(const Model& model, const Workspace& w, Coupling& c) noexcept {
 void track_penetration(const Model& model, const State& s, const Workspace& w,
                        Coupling& c) noexcept {
   find_track_motion(model, w, c);
-  for (ContactId i = 0; i < c.contacts; ++i) {
+  for (const ContactId i : contacts(c)) {
     // Off the rail: far away.
     c.track_free[i] = c.contact[i].inactive ? c.contact[i].penetration : -1.;
     if (c.contact[i].on_rail)
@@ -143,7 +143,7 @@ Status status_of(PortStatus met) noexcept {
 /// Penetration of a port without the forces of all.
 double free_depth(const Model& model, const Workspace& w, const Coupling& c, int port) noexcept {
   if (port >= c.contacts || !stands(c.contact[port])) return c.track_free[port];
-  return c.track_free[port] - model.scheme.theta * lift_by(model, c, port, w.solved);
+  return c.track_free[port] - model.scheme.theta * lift_by(model, c, {port}, w.solved);
 }
 
 /// Ports for given multipliers.
@@ -203,7 +203,7 @@ void solve_all(const Model& model, const Stage& stage, State& s, Workspace& w, C
 
 void publish_wheels(const Model& model, const Coupling& c, State& state,
                     CoupleResult& result) noexcept {
-  for (ContactId i = 0; i < c.contacts; ++i) {
+  for (const ContactId i : contacts(c)) {
     const WheelContact& at = c.contact[i];
     if (state.contact_force[i] <= 0. && c.force[i] > 0. && impact_is_unresolved(model, c, state, i))
       result.status = result.status | Status::contact_unresolved;
@@ -247,7 +247,7 @@ CoupleResult couple(const Model& model, const Stage& stage, const ExternalContac
   track_penetration(model, state, w, c);
   if (model.scheme.mean != 0) find_means(model, state, c);
   if (model.fixed.count > 0) couple_fixed_ports(model, state, w, c);
-  for (ContactId i = 0; i < c.contacts; ++i) c.force[i] = state.contact_force[i];
+  for (const ContactId i : contacts(c)) c.force[i] = state.contact_force[i];
   if (couples_system(model)) couple_system(model, state, w, c, result.system);
   if (c.rows > c.contacts)
     solve_with_runners(model, stage, state, w, c, result);

@@ -45,6 +45,8 @@ struct Coupling {
   double penetration[kPorts];                // m; of scenes without runners [ports]
 };
 
+inline ContactIds contacts(const Coupling& c) noexcept { return {0, c.contacts}; }
+
 /// Displacement along a coordinate of a wheelset by a unit force along it, m/N or rad/(N m).
 inline double compliance_of(const WheelsetModel& set, int k) noexcept {
   return set.inverse[(kMotions + 1) * k];
@@ -90,7 +92,7 @@ inline const RailRow& base_row(const Coupling& c, int base) noexcept {
 inline bool is_by_levers(const Coupling& c, int base) noexcept {
   return c.mirrored && base >= c.contacts && (base - c.contacts) % c.of_set >= kWheelSeatRows;
 }
-/// The roll of the right rail by a line where seats mirror, in place of that of the left one.
+/// The roll of the right rail by a line where seats mirror, over that of the left one.
 constexpr double right_roll(const LineModel& line) noexcept {
   return line.rail_factor[1] == line.rail_factor[0] ? -1. : 1.;
 }

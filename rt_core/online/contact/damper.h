@@ -8,10 +8,10 @@ namespace railstep {
 // speed of the depth is linear in the depth:
 // - if forces act at the step's end, d is the depth there, and the scheme has
 //   v1 = v* + kv (u1 - u*);
-// - if forces are held over the step, the depth is D = theta d1 + (1 - theta) d0, and the mean
-// speed
-//   is (d1 - d0)/dt = (D - d0)/(theta dt). So the damper dissipates c (d1 - d0)^2/dt, and for
-//   theta >= 1/2 the work on the spring is at least what it stores, while the port stays closed.
+// - if forces are held over the step, the depth is D = theta d1 + (1 - theta) d0, and the
+//   mean speed is (d1 - d0)/dt = (D - d0)/(theta dt). So the damper dissipates c (d1 - d0)^2/dt,
+//   and for theta >= 1/2 the work on the spring is at least what it stores, while the port stays
+//   closed.
 
 /// Speed of a port's depth d over a step: per_metre d + before.
 struct DepthSpeed {
@@ -25,7 +25,7 @@ inline DepthSpeed speed_at_end(const Scheme& scheme, double depth, double speed)
 
 /// Mean speed over a step whose forces are held. @param depth  at its start, m
 inline DepthSpeed mean_speed(const Scheme& scheme, double depth) noexcept {
-  const double per_metre = 1. / (scheme.theta * scheme.dt);
+  const double per_metre = mean_rate(scheme);
   return {per_metre, -per_metre * depth};
 }
 

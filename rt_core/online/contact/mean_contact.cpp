@@ -23,7 +23,7 @@ double residual_before(const Model& model, const State& s, const Coupling& c, in
 }
 
 void find_means(const Model& model, const State& s, Coupling& c) noexcept {
-  for (ContactId i = 0; i < c.contacts; ++i) {
+  for (const ContactId i : contacts(c)) {
     const WheelContact& at = c.contact[i];
     if (!(c.law[i].hertz > 0.) || !(at.on_rail || at.on_ground)) continue;
     // track_free has the track and the loads at the step's end, and no position of the body that

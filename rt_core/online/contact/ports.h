@@ -36,8 +36,8 @@ struct PortLaw {
 };
 inline constexpr double kJumpDepth = 1e-6;  // m
 
-/// The force of a port alone at a penetration, and its slope over it; the reverse for a force > 0,
-/// or for any force of a bilateral port.
+/// The force of a port alone at a penetration, and its slope over it; port_depth() is the inverse,
+/// for a force > 0 or any force of a bilateral port.
 struct PortForce {
   double force, slope;  // N, N/m
 };

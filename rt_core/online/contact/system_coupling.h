@@ -24,8 +24,8 @@ void couple_system(const Model& model, State& state, Workspace& workspace, Coupl
                    SystemResult& result) noexcept;
 
 /// Solves the system under the present forces of the contacts. Moves the contacts, and the seats of
-/// runners if there are any, by what was not expected of its forces.
-/// @returns whether this is too little to count
+/// runners if there are any, by the part of its forces that was not predicted.
+/// @returns whether this part is negligible
 bool settle_system(const Model& model, State& state, Workspace& workspace, Coupling& c,
                    CoupledRunners* runners, SystemResult& result) noexcept;
 

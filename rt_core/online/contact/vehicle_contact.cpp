@@ -21,7 +21,7 @@ void place_vehicle_wheels(const Model& model, std::int64_t step, double before,
   const double behind = track_offset(model, step);
   const SuspendedModel* last = nullptr;
   double way = 0., further = 0.;
-  for (ContactId i = tread_count(model); i < wheel_count(model); ++i) {
+  for (const ContactId i : upright_wheels(model)) {
     const ContactModel& wheel = model.contact[i];
     const SuspendedModel& vehicle = bodies_of(model, i);
     if (&vehicle != last) {
@@ -63,7 +63,7 @@ void place_vehicle_wheels(const Model& model, std::int64_t step, double before,
 void find_vehicle_contacts(const Model& model, std::int64_t step, double before,
                            const Configuration& at, WheelContact* contact) noexcept {
   place_vehicle_wheels(model, step, before, contact);
-  for (ContactId i = tread_count(model); i < wheel_count(model); ++i) {
+  for (const ContactId i : upright_wheels(model)) {
     WheelContact& found = contact[i];
     const SuspendedModel& vehicle = bodies_of(model, i);
     const double height = found.on_rail ? motion(model, found.row, at) : 0.;

@@ -9,7 +9,7 @@ namespace railstep {
 struct WheelSeatRow {
   bool on_rail;
   double rise;  // m, of second order in the roll of the rail (track/p_delta.h)
-  double lean;  // m: of rows along y and z, their part by the roll that is not in `row`, negative
+  double lean;  // m: of rows along y and z, minus their part by the roll that is not in `row`
   RailRow row;
 };
 
@@ -30,7 +30,8 @@ struct SeatFlexibility {
 /// @param place  of its row along z
 SeatFlexibility seat_flexibility(const Model& model, const RunnerModel& runner, int side,
                                  const RailForce& place) noexcept;
-/// The same without residual_under(), which forces along z of all wheels have among them.
+/// The same without residual_under(), where residual_displacement() has the forces along z of all
+/// wheels.
 SeatFlexibility seat_flexibility_beside(const Model& model, const RunnerModel& runner, int side,
                                         const RailForce& place) noexcept;
 

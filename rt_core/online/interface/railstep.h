@@ -107,8 +107,9 @@ void railstep_reset(railstep_run* run) RAILSTEP_NOTHROW;
  * tells whether every bit is as where it was written: RAILSTEP_OK or RAILSTEP_OTHER_BITS. */
 int32_t railstep_self_check(railstep_run* run) RAILSTEP_NOTHROW;
 
-/* One frame. inputs: [railstep_inputs()], or null: as they are held. Returns what it met, and
- * what of nonfinite_input, nonfinite_state and force_saturated was met since the start. */
+/* One frame. inputs: [railstep_inputs()], or null: as they are held. Returns the status bits of the
+ * frame. Three of them stay set once a frame has met them: nonfinite_input, nonfinite_state and
+ * force_saturated. */
 uint32_t railstep_step(railstep_run* run, const double* inputs) RAILSTEP_NOTHROW;
 /* Outputs of the last frame, or of the start. outputs: [railstep_outputs()] overwritten. */
 void railstep_read(const railstep_run* run, double* outputs) RAILSTEP_NOTHROW;

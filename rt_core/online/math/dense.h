@@ -9,18 +9,6 @@ inline double dot(const double* x, const double* y, int n) noexcept {
   return sum;
 }
 
-/// Sum of x_i y_i by four sums that do not wait for each other.
-inline double fast_dot(const double* x, const double* y, int n) noexcept {
-  double sum[4] = {};
-  int i = 0;
-  for (; i + 4 <= n; i += 4) {
-#pragma omp simd
-    for (int l = 0; l < 4; ++l) sum[l] += x[i + l] * y[i + l];
-  }
-  for (int l = 0; i < n; ++i, ++l) sum[l] += x[i] * y[i];
-  return (sum[0] + sum[1]) + (sum[2] + sum[3]);
-}
-
 /// y += A x, A of `count` columns [n], one after the other. Four columns at a time, so that y is
 /// read and written less often.
 inline void columns_multiply_add(const double* A, const double* x, double* y, int n,

@@ -2,8 +2,8 @@
 
 namespace railstep {
 
-/// Far above every number of a model or a state. Products of four numbers below it do not overflow
-/// by far.
+/// Far above every number of a model or a state. Products of four numbers below it are far from
+/// overflow.
 inline constexpr double kMostNumber = 0x1p200;  // 1.6e60
 
 /// False for infinities and NaN.

@@ -5,7 +5,7 @@
 #if defined(__SSE2__)
 #include <xmmintrin.h>
 #elif defined(__arm__) && defined(__ARM_FP) && (__ARM_FP & 8) == 0
-#error "railstep computes in doubles, which this processor's floating-point unit has not"
+#error "railstep computes in doubles, which this processor's floating-point unit does not have"
 #elif !defined(__aarch64__) && !(defined(__arm__) && defined(__ARM_FP))
 #error \
     "float_mode.h knows x86 with SSE2, aarch64 and Arm with FPv5; add the control word of this machine"

@@ -87,8 +87,8 @@ void place_slopes(const NewtonProblem& p, NewtonSlopes& slopes) noexcept;
 /// Factors I - S Y B by elimination with row exchanges; not solvable where a pivot is not above
 /// 1e-12 of the matrix. The laws' slopes must be known.
 void factor_slopes(const NewtonProblem& p, NewtonSlopes& slopes) noexcept;
-/// Step from a point by slopes that may be those of another, as far as NewtonPoint::steep does not
-/// say how they changed. Unless these are solvable it is -missed / (1 - Y_ii J_ii) of each
+/// Step from a point by slopes that may be those of another point; NewtonPoint::steep says how far
+/// they changed. If the slopes are not solvable, the step is -missed / (1 - Y_ii J_ii) of each
 /// coordinate by itself.
 void newton_step(const NewtonProblem& p, const NewtonSlopes& slopes, const NewtonPoint& at,
                  double* step) noexcept;
@@ -121,8 +121,8 @@ void go_part(const NewtonProblem& p, const Law& law, const double* root, const N
 }
 
 inline constexpr double kSlowStep = .03;
-/// Whether slopes are to be found anew: a step by those that are left more than kSlowStep of the
-/// residual, or as many such steps as there may still be would not end the iteration.
+/// Whether the slopes have to be found again: a step by the present ones left more than kSlowStep
+/// of the residual, or as many such steps as there may still be would not end the iteration.
 inline bool is_slow(double residual, double before, double tolerance, int steps_left) noexcept {
   if (!(residual <= kSlowStep * before)) return true;
   const double part = residual / before;

@@ -7,7 +7,26 @@ namespace railstep {
 // wheels of all vehicles, then left and right flange of each wheelset that has them. Treads and
 // vehicles' wheels together are the wheels. Only this header computes with these numbers. A side
 // is 0 left, 1 right; a wheelset's side is on the rail of the same number.
-using ContactId = std::int32_t;
+struct ContactId {
+  std::int32_t number;
+  constexpr operator std::int32_t() const noexcept { return number; }  // as an index
+};
+
+/// Contacts in the order of their numbers.
+struct ContactIds {
+  struct Place {
+    std::int32_t number;
+    constexpr ContactId operator*() const noexcept { return {number}; }
+    constexpr Place& operator++() noexcept {
+      ++number;
+      return *this;
+    }
+    constexpr bool operator!=(Place other) const noexcept { return number != other.number; }
+  };
+  std::int32_t first, past;
+  constexpr Place begin() const noexcept { return {first}; }
+  constexpr Place end() const noexcept { return {past}; }
+};
 
 inline constexpr int kMaxFlanges = 2 * kMaxWheelsets;
 
@@ -19,6 +38,17 @@ inline std::int32_t flange_count(const Model& model) noexcept { return 2 * model
 inline std::int32_t contact_count(const Model& model) noexcept {
   return wheel_count(model) + flange_count(model);
 }
+
+inline ContactIds treads(const Model& model) noexcept { return {0, tread_count(model)}; }
+inline ContactIds upright_wheels(const Model& model) noexcept {
+  return {tread_count(model), wheel_count(model)};
+}
+/// Treads and upright wheels.
+inline ContactIds wheels(const Model& model) noexcept { return {0, wheel_count(model)}; }
+inline ContactIds flanges(const Model& model) noexcept {
+  return {wheel_count(model), contact_count(model)};
+}
+inline ContactIds contacts(const Model& model) noexcept { return {0, contact_count(model)}; }
 
 // The track is touched along rows: one of each contact, then those of the seats of runners' wheels,
 // left and right of each wheelset in turn: along y and z at the centre of the crown, and roll of
@@ -35,25 +65,29 @@ inline std::int32_t track_row_count(const Model& model) noexcept {
 /// @param wheelset  among those of all runners
 inline std::int32_t wheel_seat_row(const Model& model, std::int32_t wheelset,
                                    std::int32_t side) noexcept {
-  return contact_count(model) + kWheelSeatRows * (2 * wheelset + side);
+  return contact_count(model) + kWheelSeatRows * WheelId{wheelset, side}.number();
 }
 
 /// The tread of a wheelset on a side.
 constexpr ContactId tread_of(std::int32_t wheelset, std::int32_t side) noexcept {
-  return 2 * wheelset + side;
+  return {2 * wheelset + side};
 }
 /// The tread on the other side of the same wheelset.
-constexpr ContactId other_tread(ContactId tread) noexcept { return tread ^ 1; }
+constexpr ContactId other_tread(ContactId tread) noexcept { return {tread.number ^ 1}; }
 /// The contact of a wheel by its number among the wheels of all vehicles.
 inline ContactId vehicle_contact(const Model& model, std::int32_t vehicle_wheel) noexcept {
-  return tread_count(model) + vehicle_wheel;
+  return {tread_count(model) + vehicle_wheel};
 }
 /// A flange's number among all flanges. @param pair  the model's FlangeModel
 constexpr std::int32_t flange_number(std::int32_t pair, std::int32_t side) noexcept {
   return 2 * pair + side;
 }
 inline ContactId flange_contact(const Model& model, std::int32_t flange) noexcept {
-  return wheel_count(model) + flange;
+  return {wheel_count(model) + flange};
+}
+/// The model's FlangeModel of a flange's contact.
+inline std::int32_t flange_pair(const Model& model, ContactId flange) noexcept {
+  return (flange.number - wheel_count(model)) / 2;
 }
 
 inline bool is_flange(const Model& model, ContactId contact) noexcept {
@@ -89,7 +123,7 @@ inline WheelsetContacts contacts_of(const Model& model, std::int32_t wheelset) n
               pair,
               {left, right, flange_contact(model, flange_number(pair, 0)),
                flange_contact(model, flange_number(pair, 1))}};
-  return {2, -1, {left, right, 0, 0}};
+  return {2, -1, {left, right, {}, {}}};
 }
 
 }  // namespace railstep

@@ -267,7 +267,7 @@ void describe_track(Archive& a, Model& m) {
   a.count(m.flanges, m.wheelsets < room ? m.wheelsets : room);
   for (std::int32_t i = 0; i < m.flanges; ++i) describe(a, m.flange[i]);
   for (std::int32_t i = 0; i < m.vehicles; ++i) describe(a, m.vehicle[i], kMaxVehicleUnknowns);
-  for (ContactId i = 0; i < contact_count(m); ++i) describe(a, m.contact[i], m);
+  for (const ContactId i : contacts(m)) describe(a, m.contact[i], m);
   a.count(m.runners, kMaxRunners);
   a.count(m.runner_wheelsets, kMaxRunnerWheelsets);
   a.count(m.runner_stops, kMaxRunnerStops);

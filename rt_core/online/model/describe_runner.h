@@ -72,7 +72,7 @@ void describe(Archive& a, RollingContact& c) {
   RollingPatch& patch = creep.patch;
   RollingFriction& friction = creep.friction;
   for (double* x : {&friction.rail[0], &friction.rail[1], &friction.kinetic, &friction.half,
-                    &patch.half_length, &patch.half_width, &patch.shear, &patch.growth,
+                    &patch.half_length, &patch.half_width, &patch.shear, &patch.exponent,
                     &patch.kalker.c11, &patch.kalker.c22, &patch.kalker.c23, &patch.kalker.c33})
     a.real(*x);
   a.count(friction.places, kMostFrictionPlaces);

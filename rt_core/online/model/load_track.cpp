@@ -153,7 +153,8 @@ bool friction_is_valid(const RollingFriction& f) noexcept {
 
 bool creep_is_valid(const RollingCreep& c) noexcept {
   const RollingPatch& p = c.patch;
-  const double coefficients[] = {p.kalker.c11, p.kalker.c22, p.kalker.c23, p.kalker.c33, p.growth};
+  const double coefficients[] = {p.kalker.c11, p.kalker.c22, p.kalker.c23, p.kalker.c33,
+                                 p.exponent};
   return are_not_negative(coefficients, 5) && friction_is_valid(c.friction) && p.half_length > 0. &&
          p.half_width > 0. && p.shear > 0. && (c.law != CreepLaw::fastsim || c.strips > 0);
 }
@@ -231,7 +232,7 @@ bool has_its_place(const Model& m, ContactId i) noexcept {
   if (i < tread_count(m))
     return c.kind == ContactKind::tread && i == tread_of(c.bodies, c.rail) && c.law.hertz > 0.;
   if (i >= wheel_count(m)) {
-    const std::int32_t pair = (i - wheel_count(m)) / 2;
+    const std::int32_t pair = flange_pair(m, i);
     return c.kind == ContactKind::flange && i == flange_contact(m, flange_number(pair, c.rail)) &&
            c.bodies == m.flange[pair].wheelset;
   }
@@ -255,8 +256,8 @@ bool residual_is_valid(const Model& m) noexcept {
   if (tables && (r.points < 3 || r.elements < 1)) return false;
   for (std::int32_t i = 0; i < m.loads && tables; ++i)
     if (m.load[i].load_point >= r.load_points) return false;
-  for (ContactId i = 0; i < contact_count(m) && tables; ++i)
-    if (m.contact[i].load_point >= r.load_points) return false;
+  for (const ContactId i : contacts(m))
+    if (tables && m.contact[i].load_point >= r.load_points) return false;
   for (std::int32_t i = 0; i < m.runners && tables; ++i)
     if (m.runner[i].load_point[0] >= r.load_points || m.runner[i].load_point[1] >= r.load_points)
       return false;
@@ -338,7 +339,7 @@ bool track_is_valid(const Model& m) noexcept {
   if (!flanges_are_valid(m)) return false;
   for (std::int32_t i = 0; i < m.vehicles; ++i)
     if (!vehicle_is_valid(m, m.vehicle[i])) return false;
-  for (ContactId i = 0; i < contact_count(m); ++i)
+  for (const ContactId i : contacts(m))
     if (!contact_is_valid(m, i)) return false;
   if (!runners_are_valid(m)) return false;
   for (std::int32_t i = 0; i < m.signals; ++i)

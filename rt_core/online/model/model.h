@@ -337,6 +337,12 @@ inline double held_fraction(const Model& model) noexcept {
   return model.form == Form::condensed ? .5 : 1.;
 }
 
+/// Rate of a motion by its change in the law of a wheelset's contacts, 1/s: its mean over the step
+/// if forces are held over it, else that at the step's end.
+inline double law_rate(const Model& model) noexcept {
+  return model.form == Form::condensed ? mean_rate(model.scheme) : model.scheme.kv;
+}
+
 /// Number of unknowns of a state, from the first on, that are modes of condensed lines.
 inline std::int32_t modal_unknowns(const Model& model) noexcept {
   return model.form == Form::condensed ? model.line_unknowns : 0;

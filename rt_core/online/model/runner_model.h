@@ -15,18 +15,18 @@ enum class BodyMotion { x, y, z, roll, pitch, yaw };
 inline constexpr int kMotions = 6;
 constexpr int index_of(BodyMotion motion) noexcept { return static_cast<int>(motion); }
 
-/// A patch under a wheel as creep sees it. It grows as the root of the penetration; coefficients of
-/// creep that are given instead hold for every force, as if the patch kept its size.
+/// A patch under a wheel as creep sees it. It grows as the root of the penetration; if coefficients
+/// of creep are given instead, they hold for every force, as if the patch kept its size.
 struct RollingPatch {
   double half_length, half_width;  // along the rail and across, m; if it grows, m^0.5 of root depth
   double shear;                    // modulus, N/m2
-  double growth;  // power of the normal force by which it grows: 1/3 by Hertz, 0: it keeps its
-                  // size; of profiles any above 0, as it follows from the patch
+  double exponent;  // power of the normal force by which it grows: 1/3 by Hertz, 0: it keeps its
+                    // size; of profiles any above 0, as it follows from the patch
   Kalker kalker;
 };
 
-/// Coulomb friction between wheels and rails. Over the slip of the wheel its coefficient falls from
-/// that of a wheel that rolls to the part `kinetic` of it, half of the way at the slip `half`.
+/// Coulomb friction between wheels and rails. With the slip of the wheel its coefficient falls from
+/// that of a wheel that rolls to the part `kinetic` of it; half of this fall is at the slip `half`.
 struct RollingFriction {
   double rail[2];                 // of the left and of the right rail where they have most of it
   double kinetic = 1.;            // above 0; 1: it does not depend on the slip
@@ -71,8 +71,8 @@ inline bool has_profiles(const RollingContact& c) noexcept {
 }
 
 /// A bump stop: a spring beyond a gap against and along its axis. Or the brake of a wheelset: a
-/// spring and a damper about its axle that slide at a limit, which is Coulomb friction that holds a
-/// wheel.
+/// spring and a damper about its axle that slide at a limit. This is Coulomb friction that can hold
+/// a wheel.
 struct StopModel {
   double below, above;   // gaps, m; 0 of a brake
   double stiffness;      // N/m; N m/rad
@@ -81,8 +81,8 @@ struct StopModel {
   BodyForce limit = {};  // of a brake's moment, N m
 };
 inline bool is_brake(const StopModel& stop) noexcept { return stop.per_way > 0.; }
-/// How a brake is held in a step. The rate of its turn z is `rate` z and `rate_at_zero`.
-struct BrakeHold {
+/// A brake in a step. The rate of its turn z is `rate` z + `rate_at_zero`.
+struct BrakeStep {
   double anchor, limit;       // turn at which its spring is slack, rad; N m
   double rate, rate_at_zero;  // 1/s, rad/s
 };
@@ -90,15 +90,15 @@ struct StopForce {
   double force, slope, energy;  // N, on the body that moves; N/m; J
 };
 /// @param z     displacement along the axis, m, or whole turn of the wheelset, rad
-/// @param hold  of a brake
-inline StopForce stop_force(const StopModel& stop, double z, const BrakeHold& hold = {}) noexcept {
+/// @param brake  where the stop is one
+inline StopForce stop_force(const StopModel& stop, double z, const BrakeStep& brake = {}) noexcept {
   if (is_brake(stop)) {
-    const double turned = z - hold.anchor;
+    const double turned = z - brake.anchor;
     const double held =
-        -stop.stiffness * turned - stop.damping * (hold.rate * z + hold.rate_at_zero);
-    const bool slides = held >= hold.limit || held <= -hold.limit;
-    const double force = !slides ? held : held > 0. ? hold.limit : -hold.limit;
-    return {force, slides ? 0. : -(stop.stiffness + stop.damping * hold.rate),
+        -stop.stiffness * turned - stop.damping * (brake.rate * z + brake.rate_at_zero);
+    const bool slides = held >= brake.limit || held <= -brake.limit;
+    const double force = !slides ? held : held > 0. ? brake.limit : -brake.limit;
+    return {force, slides ? 0. : -(stop.stiffness + stop.damping * brake.rate),
             .5 * stop.stiffness * turned * turned};
   }
   if (z < stop.above && z > -stop.below) return {0., 0., 0.};
@@ -129,9 +129,9 @@ struct RunnerWheelset {
 /// A vehicle in space on both rails. q are the six motions of each body, then the deflection of
 /// each damper that is in series with a spring; such a coordinate has no mass. Constraints hold the
 /// first body's x at its place along the track, by the force of the drive, and the lengths of rigid
-/// rods. `inverse` is that of what they leave free, so that they hold to rounding.
-/// A vehicle that rolls freely goes as forces drive it: nothing holds its x, and its frame stays
-/// where it starts, so that x holds the way.
+/// rods. `inverse` is that of the motions that they leave free, so that they hold to rounding. A
+/// vehicle that rolls freely goes as forces drive it: nothing holds its x, and its frame stays
+/// where it starts, so that x is the way.
 struct RunnerModel : SuspendedModel {
   std::int32_t rolls_freely;  // 0 or 1
   double start_speed;         // m/s, of one that rolls freely; else 0
@@ -152,6 +152,13 @@ struct RunnerModel : SuspendedModel {
   const double* compliance;
 };
 
+/// A wheel among those of all runners: its number counts left and right of each wheelset in turn.
+struct WheelId {
+  std::int32_t wheelset, side;  // side: 0 left, 1 right
+  constexpr std::int32_t number() const noexcept { return 2 * wheelset + side; }
+};
+constexpr WheelId wheel_of(std::int32_t number) noexcept { return {number / 2, number % 2}; }
+
 /// How many coordinates of a runner meet forces that are not linear: the motions of its wheelsets,
 /// then the displacements of its stops.
 inline std::int32_t interface_size(const RunnerModel& runner) noexcept {
@@ -163,7 +170,8 @@ inline double ahead_of(const RunnerModel& runner, const double* u) noexcept {
   return runner.rolls_freely != 0 ? u[0] : 0.;
 }
 
-/// The constraints of a runner: its drive, which one that rolls freely has not, then its rods.
+/// Number of rows of `reaction`: the drive, then the rods. The row of the drive is 0 if the runner
+/// rolls freely.
 inline std::int32_t constraint_count(const RunnerModel& runner) noexcept { return 1 + runner.rods; }
 
 }  // namespace railstep

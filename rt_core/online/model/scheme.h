@@ -21,6 +21,10 @@ struct Scheme {
   std::int32_t mean;
 };
 
+/// Where forces are held over the step, the mean rate of a motion is this times D - d0, 1/s, with
+/// D = theta d1 + (1 - theta) d0.
+inline double mean_rate(const Scheme& scheme) noexcept { return 1. / (scheme.theta * scheme.dt); }
+
 /// One solve within a step: it covers `span` seconds and ends `before` seconds before the end of
 /// `step`.
 struct Stage {

@@ -30,7 +30,7 @@ struct State {
   /// [wheels of runners][3] creepages along, across and of spin (1/m) of the last step, if any
   /// runner rolls freely.
   double* creepage;
-  double* anchor;      // [stops of runners] BrakeHold::anchor, rad, if there are brakes
+  double* anchor;      // [stops of runners] BrakeStep::anchor, rad, if there are brakes
   double* reaction;    // [runners + their rods] N, of the last step: of each runner the force ahead
                        // of its drive, then the tensions of its rods
   double* multiplier;  // [wheelsets][kGuideRows] of the guide along x, N, and about z, N m;
@@ -60,7 +60,8 @@ inline std::int32_t newton_size(const Model& model) noexcept {
     if (interface_size(model.runner[i]) > most) most = interface_size(model.runner[i]);
   return most;
 }
-/// Most scalars of the law of a wheelset, of `size` coordinates: patches of profiles come and go.
+/// Most scalars of the law of a wheelset, of `size` coordinates: patches of profiles appear and
+/// vanish.
 inline std::int64_t wheelset_ranks(const RunnerModel& runner, std::int64_t size) noexcept {
   return has_profiles(runner.contact) ? size : kWheelsetRank;
 }
@@ -94,7 +95,7 @@ inline std::int64_t profile_doubles(const Model& model) noexcept {
     any = any || has_profiles(model.runner[i].contact);
   return any ? 2 * kProfileWheelDoubles * model.runner_wheelsets : 0;
 }
-/// Whether unit responses of the lines are kept: not of condensed ones with tables.
+/// Whether unit responses of the lines are kept; those of condensed lines with tables are not.
 inline bool has_units(const Model& model) noexcept {
   bool any = false;
   for (std::int32_t l = 0; l < model.lines; ++l)
@@ -116,7 +117,7 @@ inline std::int64_t beside_doubles(const Model& model) noexcept {
 }
 
 inline constexpr std::int64_t kBrakeDoubles = 4;
-static_assert(sizeof(BrakeHold) == kBrakeDoubles * sizeof(double));
+static_assert(sizeof(BrakeStep) == kBrakeDoubles * sizeof(double));
 
 /// Scratch, meaningless between steps. The caller owns the memory: workspace_doubles() of it.
 struct Workspace {
@@ -138,7 +139,7 @@ struct Workspace {
   double* newton;      // newton_doubles()
   double* beside;      // beside_doubles()
   double* profile;     // profile_doubles()
-  BrakeHold* brake;    // [stops of runners] if there are brakes
+  BrakeStep* brake;    // [stops of runners] if there are brakes
 };
 
 /// Value of an input; 0 if there is no state yet.
@@ -205,7 +206,7 @@ inline double* guide_of(const State& state, std::int32_t wheelset) noexcept {
 /// The forces of a wheel of a runner, [kWheelForces]. @param wheelset  among those of all runners
 inline double* wheel_force_of(const State& state, std::int32_t wheelset,
                               std::int32_t side) noexcept {
-  return state.wheel_force + std::ptrdiff_t{kWheelForces} * (2 * wheelset + side);
+  return state.wheel_force + std::ptrdiff_t{kWheelForces} * WheelId{wheelset, side}.number();
 }
 
 /// Whether states keep the motions of seats.
@@ -215,7 +216,7 @@ inline bool keeps_seats(const Model& model) noexcept {
 /// The motions of the seat under a wheel of a runner, [kSeatMotions], if states keep them.
 inline double* seat_motion_of(const State& state, std::int32_t wheelset,
                               std::int32_t side) noexcept {
-  return state.seat + std::ptrdiff_t{kSeatMotions} * (2 * wheelset + side);
+  return state.seat + std::ptrdiff_t{kSeatMotions} * WheelId{wheelset, side}.number();
 }
 
 /// Whether states keep the creepages of wheels.
@@ -227,7 +228,7 @@ inline bool keeps_creepage(const Model& model) noexcept {
 inline constexpr int kWheelCreep = 4;
 /// The creepages of a wheel of a runner, [kWheelCreep], if states keep them.
 inline double* creepage_of(const State& state, std::int32_t wheelset, std::int32_t side) noexcept {
-  return state.creepage + std::ptrdiff_t{kWheelCreep} * (2 * wheelset + side);
+  return state.creepage + std::ptrdiff_t{kWheelCreep} * WheelId{wheelset, side}.number();
 }
 
 /// Numbers of State::anchor.
@@ -254,7 +255,7 @@ inline std::int64_t wheel_state_doubles(const Model& model) noexcept {
   return 2LL * (kWheelForces + (keeps_creepage(model) ? kWheelCreep : 0)) * model.runner_wheelsets +
          seat_doubles(model) + anchor_doubles(model);
 }
-/// Those, and those of State::reaction.
+/// Numbers of these and of State::reaction.
 inline std::int64_t runner_state_doubles(const Model& model) noexcept {
   return wheel_state_doubles(model) + model.runners + model.runner_rods;
 }
@@ -343,7 +344,7 @@ inline Workspace workspace_on(const Model& model, double* memory) noexcept {
           of_newton,
           beside,
           profile,
-          reinterpret_cast<BrakeHold*>(brake)};
+          reinterpret_cast<BrakeStep*>(brake)};
 }
 
 /// Copies a state to other memory, without the latched status.

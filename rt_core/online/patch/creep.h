@@ -18,8 +18,8 @@ CreepForce creep_force(CreepLaw law, int strips, const CreepPatch& patch,
 /// The patch of normalised creepages: half lengths whose product is 1, a shear modulus and a limit
 /// of 1.
 CreepPatch normalised_patch(double ratio, const Kalker& kalker) noexcept;
-/// Creepages of normalised ones at that patch: x = 4 G ab xi / (mu N), e alike, p = 2 G (ab)^1.5
-/// phi / (mu N).
+/// Creepages at that patch from normalised ones: x = 4 G ab xi / (mu N), e = 4 G ab eta / (mu N),
+/// p = 2 G (ab)^1.5 phi / (mu N).
 Creepages<double> normalised_creepages(double x, double e, double p) noexcept;
 
 }  // namespace railstep

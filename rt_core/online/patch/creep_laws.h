@@ -59,7 +59,7 @@ CreepPair<Real> linear(const CreepPatch& p, const Creepages<Real>& c) noexcept {
 /// Shen, Hedrick and Elkins (1983): the size of the linear force u over the limit becomes u - u^2/3
 /// + u^3/27, and 1 from u = 3 on. As it saturates the force turns towards the slip: along (C1 xi,
 /// C2 eta + spin's part) with C_i = (1 - w) c_ii + w (c11 + c22)/2, w = min(1, u/3)^2. The force is
-/// continuous at u = 3; its derivatives step there by what the turn ends with.
+/// continuous at u = 3; its derivatives jump there, as the turn ends.
 template <class Real>
 CreepPair<Real> she(const CreepPatch& p, const Creepages<Real>& c) noexcept {
   using std::sqrt;

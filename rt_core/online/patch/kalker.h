@@ -13,9 +13,9 @@ struct Kalker {
 /// Kalker's coefficients by interpolation over a/b, good to 0.5 % of the tables between their rows.
 /// Those for nu = 0.25 are Kalker's own (1967); those for nu = 0.3 are of the program CONTACT, two
 /// grids extrapolated, and uncertain by 1 %. c33 is that of nu = 0.25 throughout.
-/// @param ratio    a/b; from 0.1 to 10 the tables hold, beyond them their ends
-/// @param poisson  from 0.25 to 0.3 coefficients are straight between the tables; beyond, their
-/// ends
+/// @param ratio    a/b; the tables hold from 0.1 to 10; beyond, their end values hold
+/// @param poisson  coefficients are linear between the tables from 0.25 to 0.3; beyond, those of
+/// the nearer table hold
 Kalker kalker(double ratio, double poisson) noexcept;
 
 }  // namespace railstep

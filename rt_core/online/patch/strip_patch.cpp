@@ -33,7 +33,7 @@ struct Near {
 /// fourth by its series are good to 5e-4 at y = 0.004 l, 5e-6 at 0.03 l.
 inline Near near_of(double l2, double y2) noexcept {
   double a = square_root(l2 + y2), g = square_root(y2), power = .5, sum = .5 * l2, c = 0.;
-  for (int turn = 0; turn < 3; ++turn) {
+  for (int step = 0; step < 3; ++step) {
     c = .5 * (a - g);
     const double mean = .5 * (a + g);
     g = square_root(a * g);
@@ -49,7 +49,7 @@ inline Near near_of(double l2, double y2) noexcept {
 /// @param longest  l^2 at the point of least gap
 void fill(const StripPatch& patch, double longest, Terms& terms) noexcept {
   const double width2 = patch.width * patch.width, twice = 2. * patch.radius;
-  const double one = patch.hold.first, other = patch.hold.second;
+  const double one = patch.collocation.first, other = patch.collocation.second;
   const double* const gap = patch.gap;
 #pragma omp simd
   for (int i = 0; i < patch.strips; ++i) {
@@ -84,9 +84,9 @@ PatchForce patch_force(const StripPatch& patch, double approach) noexcept {
     near_slope += terms.slope[i];
     wet += terms.slope[i] > 0. ? 1. : 0.;
   }
-  if (!(squares > 0.) || !(approach > patch.hold.gap)) return found;
+  if (!(squares > 0.) || !(approach > patch.collocation.gap)) return found;
   const double I1 = .5 * M_PI * squares * patch.width, I2 = near * patch.width;
-  const double held = approach - patch.hold.gap;
+  const double held = approach - patch.collocation.gap;
   found.normal = .5 * M_PI * kOfModulus * patch.modulus * held * I1 / I2;
   found.stiffness = found.normal * (1. / held + longer * (wet / squares - near_slope / near));
   found.half_length = square_root(longer * approach);  // at the point of least gap
@@ -96,7 +96,7 @@ PatchForce patch_force(const StripPatch& patch, double approach) noexcept {
   return found;
 }
 
-PatchHold hold_of(const StripPatch& patch, double approach) noexcept {
+Collocation collocation_of(const StripPatch& patch, double approach) noexcept {
   const double level = kVirtualPart * approach;
   const double* const gap = patch.gap;
   double weight[kMostPatchStrips];

@@ -7,7 +7,7 @@ inline constexpr double kVirtualPart = .55;
 /// The law's modulus over that of the bodies. It is calibrated: with it the mean approach on 24
 /// patches of 10 kN is that of the half-space (docs/wheel-rail.md has others to compare with).
 inline constexpr double kOfModulus = .979;
-/// Which minima of the gap share a patch does not change below this depth, m.
+/// Minima of the gap of less depth share patches as if they had this depth, m.
 inline constexpr double kLeastPatchDepth = 3e-5;
 
 /// A contact patch under an approach: its force and its shape.
@@ -22,9 +22,9 @@ struct PatchForce {
 
 inline constexpr int kMostPatchStrips = 129;
 
-/// Where a patch holds its approach: at two points, in strips from the middle of the first one, and
-/// a mean gap, m.
-struct PatchHold {
+/// Where the approach fixes the pressure of a patch: two points, in strips from the middle of the
+/// first one, and the mean gap, m.
+struct Collocation {
   double first, second, gap;
 };
 
@@ -33,7 +33,7 @@ struct StripPatch {
   const double* gap;  // [strips], along the normal where the bodies just touch, m: at least 0
   int strips;         // at most kMostPatchStrips
   double deepest;     // the point of least gap, in strips from the middle of the first one
-  PatchHold hold;
+  Collocation collocation;
   double width;    // of a strip, m
   double radius;   // of the wheel in the plane along the rail, m
   double modulus;  // E / (1 - nu^2) of two like bodies, N/m2
@@ -41,30 +41,32 @@ struct StripPatch {
 
 /// The normal force by virtual penetration with semi-elliptic strips: J. Piotrowski and W. Kik, A
 /// simplified model of wheel/rail contact mechanics for non-Hertzian problems, Vehicle System
-/// Dynamics 46, 2008. Bodies overlap by 0.55 of the approach d, a strip where they do is long
-///   l^2 = 2 R (0.55 d - gap)
-/// to each side, its pressure is p sqrt(l^2 - x^2) with one p for all strips, and p holds the
-/// approach, by Boussinesq:
+/// Dynamics 46, 2008. Bodies overlap by 0.55 of the approach d. A strip where they overlap has the
+/// half length l,
+///   l^2 = 2 R (0.55 d - gap).
+/// Its pressure is p sqrt(l^2 - x^2) with one p for all strips. The approach fixes p, by
+/// Boussinesq:
 ///   N = k pi E (d - gap) / (2 (1 - nu^2)) I1 / I2,   I1 = sum of pi l^2 / 2,
 ///   I2 = sum of 2 sqrt(l^2 + y^2) (K - E)(k),   k^2 = l^2 / (l^2 + y^2),
-/// K and E the complete elliptic integrals. Kik and Piotrowski hold it at the point of least gap.
-/// That leaps between two valleys of one patch, and the force with it. Here it holds in the mean
-/// over the patch with weights l^3: of I2 by Gauss' rule of two points, one standard deviation to
-/// both sides of the mean place, see hold_of(). Near a point the terms of I2 grow as -log y: y^2 is
-/// that whose logarithm is the mean over a strip, which from a strip's width on is less by width^2
-/// / 12. The work of the force is a function of the approach.
+/// K and E the complete elliptic integrals. Kik and Piotrowski take the approach at the point of
+/// least gap. That point leaps between two valleys of one patch, and the force with it. Here the
+/// approach is the mean over the patch with weights l^3. The mean of I2 is by Gauss' rule of two
+/// points, one standard deviation to both sides of the mean place, see collocation_of(). Near a
+/// point the terms of I2 grow as -log y. Hence y^2 of a strip is taken so that its logarithm is the
+/// mean of log y^2 over the strip. From a strip's width on this is less than y^2 at the strip's
+/// middle by width^2 / 12. The work of the force is a function of the approach.
 /// @param approach  m; 0 or less gives no force
 PatchForce patch_force(const StripPatch& patch, double approach) noexcept;
 
-/// Where a patch holds its approach, of a patch whose hold is not known yet.
-PatchHold hold_of(const StripPatch& patch, double approach) noexcept;
+/// Finds Collocation of a patch; StripPatch::collocation is not read.
+Collocation collocation_of(const StripPatch& patch, double approach) noexcept;
 
-/// How far two neighbouring minima of the gap are patches by themselves: 0 where the ridge between
-/// them is well within the deeper one's overlap, or no higher than the higher minimum, 1 away from
-/// that.
+/// How far two neighbouring minima of the gap are separate patches. It is 0 where the ridge between
+/// them is well within the deeper one's overlap, or not above the higher minimum; away from that it
+/// rises to 1.
 /// @param deeper, higher, ridge  gaps, m, negative where the bodies overlap
-/// @param least_depth            above 0, m: a deeper one of less depth is looked at as if it had
-/// it
+/// @param least_depth            m, above 0: a deeper minimum of less depth counts as if it had
+/// this depth
 inline double patches_apart(double deeper, double higher, double ridge,
                             double least_depth) noexcept {
   constexpr double kPassage = .25;  // of an overlap, to both sides, and of a depth

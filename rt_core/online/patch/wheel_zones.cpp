@@ -6,10 +6,10 @@ namespace railstep {
 
 namespace {
 
-constexpr double kBeside = 1.;      // m, gap beside the rail
-constexpr double kReach = 1e-3;     // m: higher minima are not near contact
-constexpr double kAllowance = 1.3;  // of a depth, to which a step may press a zone
-constexpr double kLeastHold = .1;   // of the least depth: some strips overlap
+constexpr double kBeside = 1.;        // m, gap beside the rail
+constexpr double kReach = 1e-3;       // m: higher minima are not near contact
+constexpr double kAllowance = 1.3;    // of a depth, to which a step may press a zone
+constexpr double kLeastOverlap = .1;  // of the least depth: some strips overlap
 constexpr int kMostMinima = 8;
 constexpr int kFineStrips = 17;  // over the strips to both sides of a minimum
 
@@ -275,14 +275,15 @@ Edges edges_of(const LowestLine& line, const Search& search, const Minimum& own,
 }
 
 /// Turns a zone whose gaps are upright to the plane in which it is pressed, that of the mean place
-/// of its hold: the deepest point leaps where the bodies are alike, as throat and gauge corner are.
+/// of its collocation: the deepest point leaps where the bodies are alike, as throat and gauge
+/// corner are.
 void take_plane(const LowestLine& line, double place, WheelZone& zone) noexcept {
   const TableValue wheel = line.wheel_at(place);
   const double slope = line.wheel.slope_in_frame(wheel.slope);
   zone.cosine = 1. / square_root(1. + slope * slope);
   zone.cosine_of_wheel = 1. / square_root(1. + wheel.slope * wheel.slope);
   for (double& gap : zone.gap) gap *= zone.cosine;
-  zone.patch.hold.gap *= zone.cosine;
+  zone.patch.collocation.gap *= zone.cosine;
   zone.patch.width /= zone.cosine_of_wheel;
   zone.patch.radius = (line.pair.radius + wheel.value) / zone.cosine_of_wheel;
 }
@@ -305,9 +306,11 @@ void fill_zone(const LowestLine& line, const Search& search, const Minimum& own,
   const double deepest = (own.place - from) / width, last = kZoneStrips - 1;
   zone.patch = {zone.gap, kZoneStrips,      deepest < last ? deepest : last, {}, width,
                 0.,       line.pair.modulus};
-  const double least_hold = kLeastHold * least_depth;
-  zone.patch.hold = hold_of(zone.patch, -least > least_hold ? -least : least_hold);
-  take_plane(line, from + .5 * width * (zone.patch.hold.first + zone.patch.hold.second), zone);
+  const double least_overlap = kLeastOverlap * least_depth;
+  zone.patch.collocation =
+      collocation_of(zone.patch, -least > least_overlap ? -least : least_overlap);
+  const Collocation& pressed = zone.patch.collocation;
+  take_plane(line, from + .5 * width * (pressed.first + pressed.second), zone);
   zone.depth = -zone.cosine * least;
   zone.s = own.place;
   const double overlap = kVirtualPart * zone.depth;

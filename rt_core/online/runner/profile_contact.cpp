@@ -19,12 +19,12 @@ struct Middle {
 };
 
 Middle middle_of(const ProfileContact& c, double radius, double side, const OverRail& at) noexcept {
-  const tread_contact::CosineSine<double> turn = tread_contact::turned(side * at.section);
+  const tread_contact::CosineSine<double> roll = tread_contact::turned(side * at.section);
   const double height = c.height + (radius - c.pair.radius);
   const double y = side * at.motion[index_of(BodyMotion::y)] - c.point_y,
                z = (height + at.motion[index_of(BodyMotion::z)]) - c.point_z;
-  return {c.point_y + (y * turn.cosine + z * turn.sine),
-          c.point_z + (z * turn.cosine - y * turn.sine), turn.cosine, turn.sine};
+  return {c.point_y + (y * roll.cosine + z * roll.sine),
+          c.point_z + (z * roll.cosine - y * roll.sine), roll.cosine, roll.sine};
 }
 
 ProfilePair pair_of(const ProfileContact& c, double radius) noexcept {
@@ -56,14 +56,14 @@ void fill_patch_rows(const ProfileContact& c, const Middle& middle, double side,
 }
 
 /// Whether the scene gives coefficients of creep, which hold for a wheel.
-bool has_coefficients(const RollingContact& c) noexcept { return c.creep.patch.growth == 0.; }
+bool has_coefficients(const RollingContact& c) noexcept { return c.creep.patch.exponent == 0.; }
 
 /// Size and shape of a patch as creep sees it. It has a force from a little depth on, and grows as
 /// the root of what is beyond that.
 /// @param force, depth  of the patch pressed so deep
 void fill_creep_patch(const RollingContact& c, const PatchForce& force, double depth,
                       ProfilePatch& patch) noexcept {
-  const double per_root = 1. / std::sqrt(depth - patch.zone.patch.hold.gap);
+  const double per_root = 1. / std::sqrt(depth - patch.zone.patch.collocation.gap);
   patch.creep = {per_root * force.half_length, per_root * force.half_width, c.creep.patch.shear, 1.,
                  kalker(force.half_length / force.half_width, c.profiles.poisson)};
 }
@@ -190,10 +190,10 @@ WheelForce profile_force(const RollingContact& c, const ProfileWheel& wheel, dou
     const Slip<double> slip = slip_of(rows, v, rolling.frame, radius, rail);
     const PatchForce force = patch_force(patch_of(patch.zone), rows.depth);
     const double share = patch.zone.share;
-    const double beyond = rows.depth - patch.zone.patch.hold.gap;
+    const double beyond = rows.depth - patch.zone.patch.collocation.gap;
     RollingPatch grown = patch.creep;
-    if (grown.growth > 0. && force.normal > 0.)
-      grown.growth = .5 * force.normal / (force.stiffness * beyond);
+    if (grown.exponent > 0. && force.normal > 0.)
+      grown.exponent = .5 * force.normal / (force.stiffness * beyond);
     const ContactCreep creep =
         creep_on_rail(c.creep, grown, side, {beyond, force.normal}, slip, rolling);
     stiffness[i] = share * force.stiffness;

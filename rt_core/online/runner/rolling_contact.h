@@ -89,8 +89,9 @@ struct ConeOnCrown {
     const Vector<T> across = {x - along * axle.x, y - along * axle.y, z - along * axle.z};
     return {x, along, sqrt(dot(across, across)), across};
   }
-  /// x of the point of the line that is nearest to the cone. Across the axle the line is off by the
-  /// root of level (x - vertex)^2 + least, which grows there as the cone does along it.
+  /// x of the point of the line that is nearest to the cone. The distance of the line from the axle
+  /// is the root of level (x - vertex)^2 + least. At the nearest point it grows along the axle as
+  /// the cone does.
   T nearest() const noexcept {
     using std::sqrt;
     const T along = y * axle.y + z * axle.z, square = axle.x * axle.x;
@@ -248,9 +249,9 @@ struct ContactSlopes {
 void fill_rates_and_spread(const WheelRows<double>& r, const ContactCreep& creep,
                            ContactSlopes& slopes) noexcept;
 
-/// The creepages that a state keeps of a contact that rolls slowly. From where creep has saturated
-/// on they do not grow: the spring would have to be unloaded as far. Spin counts as if the wheel
-/// rolled ahead: the force across by it does not depend on the direction.
+/// The creepages that a state keeps of a contact that rolls slowly. Once creep has saturated they
+/// do not grow further: otherwise the spring would have to be unloaded by as much. Spin counts as
+/// if the wheel rolled ahead: the force across by it does not depend on the direction.
 /// @param slip  with_creep_before()
 inline void keep_creepage(const Rolling& rolling, const Slip<double>& slip,
                           const ContactCreep& creep, double* creepage) noexcept {

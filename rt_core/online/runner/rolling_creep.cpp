@@ -64,12 +64,12 @@ void saturate(const RollingCreep& c, const CreepPatch& patch, const LinearCreep&
 
 /// Derivatives over the normal force N. Half lengths are of N^g: forces are N times a function of
 /// both creepages times N^(2g - 1) and of the spin times N^(3g - 1), the moment is N^g times that.
-void find_by_normal(double growth, double normal, const double* creepage,
+void find_by_normal(double exponent, double normal, const double* creepage,
                     ContactCreep& found) noexcept {
-  const double power = 1. - 2. * growth, spin = 1. - 3. * growth;
+  const double power = 1. - 2. * exponent, spin = 1. - 3. * exponent;
   for (int i = 0; i < 3; ++i) {
     const double* const by = found.by_slip[i];
-    const double own = i == 2 ? 1. + growth : 1.;
+    const double own = i == 2 ? 1. + exponent : 1.;
     found.by_normal[i] =
         (own * found.force[i] -
          (power * (by[0] * creepage[0] + by[1] * creepage[1]) + spin * (by[2] * creepage[2]))) /
@@ -92,7 +92,7 @@ void mirror(ContactCreep& creep) noexcept {
 ContactCreep creep_by_law(const RollingCreep& c, const RollingPatch& of, double friction,
                           const Pressed& pressed, const Slip<double>& slip, double speed) noexcept {
   ContactCreep found{};
-  const double size = of.growth > 0. ? square_root(pressed.depth) : 1.;
+  const double size = of.exponent > 0. ? square_root(pressed.depth) : 1.;
   const CreepPatch patch{size * of.half_length, size * of.half_width, of.shear,
                          friction * pressed.normal, of.kalker};
   const LinearCreep linear = linear_creep(patch);
@@ -104,7 +104,7 @@ ContactCreep creep_by_law(const RollingCreep& c, const RollingPatch& of, double 
     take_linear(linear, creepage, found);
   else
     saturate(c, patch, linear, creepage, found);
-  find_by_normal(of.growth, pressed.normal, creepage, found);
+  find_by_normal(of.exponent, pressed.normal, creepage, found);
   for (int i = 0; i < 3; ++i)
     for (double& slope : found.by_slip[i]) slope *= per_speed;
   if (backwards) mirror(found);

@@ -15,11 +15,11 @@ struct Slip {
 struct Rolling {
   double frame;  // speed of the wheelset's frame, m/s
   double over;   // speed over which slip gives creepages, m/s; negative backwards
-  /// Slip that stands for the creep of the step before, m/s, m/s and rad/s, if creep keeps it: at a
+  /// Slip that represents the creep of the step before, m/s, m/s and rad/s; 0 unless `keeps`. At a
   /// standstill creep is a spring.
   double left[3];
   bool keeps;
-  double grip;  // part of the rail's friction that is at the place
+  double grip;  // part of the rail's friction at this place
   /// A wheelset that goes along with its frame.
   // NOLINTNEXTLINE(google-explicit-constructor)
   Rolling(double speed = 0., double of_friction = 1.) noexcept
@@ -40,11 +40,11 @@ struct ContactCreep {
 
 /// Where a contact in touch is pressed.
 struct Pressed {
-  /// Penetration beyond that from which on there is a force, m, above 0; N.
+  /// Penetration beyond that at which the force begins, m, above 0; normal force, N.
   double depth, normal;
 };
 
-inline constexpr double kLeastRolling = .1;   // m/s: creepages of slower wheels are over this speed
+inline constexpr double kLeastRolling = .1;   // m/s: slower wheels have creepages over this speed
 inline constexpr double kLeastNormal = 1e-6;  // N: a smaller normal force makes no creep
 /// Reciprocal of the speed over which creepages are taken, s/m.
 inline double per_rolling(double speed) noexcept {
@@ -64,7 +64,7 @@ inline ContactCreep contact_creep(const RollingCreep& c, const RollingPatch& pat
                                   const Pressed& pressed, const Slip<double>& slip,
                                   double speed) noexcept {
   if (!(pressed.normal > kLeastNormal)) return {};
-  if (c.law != CreepLaw::linear || patch.growth > 0.)
+  if (c.law != CreepLaw::linear || patch.exponent > 0.)
     return creep_by_law(c, patch, friction, pressed, slip, speed);
   const double per = per_rolling(speed), turned = speed < 0. ? -per : per;
   const double area = patch.half_length * patch.half_width, force = patch.shear * area;
@@ -78,7 +78,7 @@ inline ContactCreep contact_creep(const RollingCreep& c, const RollingPatch& pat
           0.};
 }
 
-/// Slip with what stands for the creep before.
+/// Slip plus the slip that represents the creep of the step before.
 inline Slip<double> with_creep_before(const Slip<double>& slip, const Rolling& rolling) noexcept {
   const double* const left = rolling.left;
   return {slip.along + left[0], slip.across + left[1], slip.spin + left[2]};
@@ -87,8 +87,8 @@ inline Slip<double> with_creep_before(const Slip<double>& slip, const Rolling& r
 /// The parts of a rail's friction at a place along the track, m. @param part  [left, right] out
 void grip_at(const RollingFriction& f, double x, double* part) noexcept;
 
-/// Friction that falls over the slip: adds what the slip does by it to the derivatives. As the
-/// limit alone has friction in it, a force is homogeneous in slip and friction.
+/// Adds to the derivatives the effect of friction that falls over the slip. A force is homogeneous
+/// in slip and friction, as friction acts through the limit alone.
 /// @param part  of friction that the slip leaves
 /// @param slip  with_creep_before()
 /// @param over_rail  the same without the creep before

@@ -51,7 +51,7 @@ void publish_wheelset(const Model& model, const RunnerModel& runner, int i, cons
       element_place(model, runner, i, {at.steps, 0., ahead_of(runner, at.u + runner.first)});
   out.wheelset_sum_y[set] = 0.;
   for (int side = 0; side < 2; ++side) {
-    const std::int32_t wheel = 2 * set + side;
+    const std::int32_t wheel = WheelId{set, side}.number();
     const double* const force = wheel_force_of(at, set, side);
     const double outwards = side == 0 ? -force[1] : force[1];
     out.wheel_q[wheel] = force[2];
@@ -88,7 +88,7 @@ double element_place(const Model& model, const RunnerModel& runner, int wheelset
   return (runner.start + (way + at.ahead)) + runner.wheelset[wheelset].place;
 }
 
-BrakeHold brake_hold(const RunnerModel& runner, std::int32_t j, double time,
+BrakeStep brake_step(const RunnerModel& runner, std::int32_t j, double time,
                      const State& s) noexcept {
   const double limit = force_at(runner.stop[j].limit, time, s.input);
   return {s.anchor[runner.first_stop + j], limit > 0. ? limit : 0., 0., 0.};
@@ -103,9 +103,9 @@ StandingStop standing_stop(const Model& model, const RunnerModel& runner, std::i
   const double time = static_cast<double>(at.steps) * model.scheme.dt;
   const Travelled frame = travelled(runner.travel, time);
   z += stop.per_way * frame.distance;
-  BrakeHold hold = brake_hold(runner, j, time, at);
-  hold.rate_at_zero = dot(row, at.v + runner.first, runner.size) + stop.per_way * frame.speed;
-  return {z, stop_force(stop, z, hold)};
+  BrakeStep brake = brake_step(runner, j, time, at);
+  brake.rate_at_zero = dot(row, at.v + runner.first, runner.size) + stop.per_way * frame.speed;
+  return {z, stop_force(stop, z, brake)};
 }
 
 Rolling rolling_of(const RunnerModel& runner, int wheelset, double frame, const double* v,

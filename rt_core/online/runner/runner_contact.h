@@ -33,23 +33,22 @@ inline void keep_wheel_force(const WheelForce& force, double* to) noexcept {
 double element_place(const Model& model, const RunnerModel& runner, int wheelset,
                      const AlongTrack& at) noexcept;
 
-/// How a wheel rolls. That of a runner that rolls freely does so at the mean of its own speed and
-/// of its rim's; slower than 1 m/s its creep follows slip in a length, up to `relaxation`, by the
-/// implicit rule of Euler.
+/// How a wheel rolls. A wheel of a runner that rolls freely rolls at the mean of its own speed and
+/// of its rim's. Below 1 m/s its creep follows the slip over a length, up to `relaxation`, by
+/// implicit Euler.
 /// @param frame     speed of the wheelset's frame, m/s
 /// @param v         [6] rates of the wheelset's motions
-/// @param creepage  [kWheelCreep] State::creepage; not looked at where the runner does not roll
-///                  freely
-/// @param dt        time in which the creep has changed since, s; 0: not at all
+/// @param creepage  [kWheelCreep] State::creepage; unused if the runner does not roll freely
+/// @param dt        time since the creep was found, s; 0: it has not changed
 Rolling rolling_of(const RunnerModel& runner, int wheelset, double frame, const double* v,
                    const double* creepage, double dt) noexcept;
 
 /// @param j  a brake among the runner's stops
-BrakeHold brake_hold(const RunnerModel& runner, std::int32_t j, double time,
+BrakeStep brake_step(const RunnerModel& runner, std::int32_t j, double time,
                      const State& s) noexcept;
 
-/// Displacement of a stop in a state, of a brake with the turn that goes with the frame's way, and
-/// its force.
+/// Displacement of a stop in a state, and its force. The displacement of a brake includes the turn
+/// by which its wheels roll along the frame's way.
 struct StandingStop {
   double z;
   StopForce force;

@@ -87,7 +87,7 @@ void find_motion(const RunnerStage& at, int wheelset, const State& s, const Work
 }
 
 void find_stops(const RunnerStage& at, const State& s, const Workspace& w, const double* u,
-                double* free, double* start, BrakeHold* hold) noexcept {
+                double* free, double* start, BrakeStep* brake) noexcept {
   const RunnerModel& r = at.runner;
   const Scheme& c = at.model.scheme;
   const double time = at.time(c.theta);
@@ -101,34 +101,34 @@ void find_stops(const RunnerStage& at, const State& s, const Workspace& w, const
         before + c.theta * ((dot(row, u_star, r.size) + dot(row, g, r.size) / c.kg) - before);
     if (!is_brake(r.stop[j])) continue;
     // Whole turns count from the anchor.
-    hold[j] = brake_hold(r, j, time, s);
-    const double turned = r.stop[j].per_way * frame.distance - hold[j].anchor;
-    hold[j].anchor = 0.;
-    hold[j].rate = at.rate;
+    brake[j] = brake_step(r, j, time, s);
+    const double turned = r.stop[j].per_way * frame.distance - brake[j].anchor;
+    brake[j].anchor = 0.;
+    brake[j].rate = at.rate;
     free[j] += turned;
     start[j] += turned;
-    hold[j].rate_at_zero =
+    brake[j].rate_at_zero =
         r.stop[j].per_way * frame.speed - at.rate * turned +
         (at.held < 1. ? -at.rate * before
                       : dot(row, w.v_star + r.first, r.size) - at.rate * dot(row, u_star, r.size));
   }
 }
 
-void stop_law(const StopModel& stop, const BrakeHold* hold, double z, double* force,
+void stop_law(const StopModel& stop, const BrakeStep* brake, double z, double* force,
               const LawSlopes* slopes) noexcept {
-  const StopForce own = is_brake(stop) ? stop_force(stop, z, *hold) : stop_force(stop, z);
+  const StopForce own = is_brake(stop) ? stop_force(stop, z, *brake) : stop_force(stop, z);
   *force = own.force;
   if (slopes == nullptr) return;
   *slopes->spread = 1.;
   *slopes->slope = own.slope;
 }
 
-void keep_brakes(const RunnerModel& runner, const double* z, const BrakeHold* hold,
+void keep_brakes(const RunnerModel& runner, const double* z, const BrakeStep* brake,
                  State& s) noexcept {
   for (std::int32_t j = 0; j < runner.stops; ++j) {
     const StopModel& stop = runner.stop[j];
     if (!is_brake(stop)) continue;
-    const double most = hold[j].limit / stop.stiffness;
+    const double most = brake[j].limit / stop.stiffness;
     double& anchor = s.anchor[runner.first_stop + j];
     if (z[j] > most) anchor += z[j] - most;
     if (z[j] < -most) anchor += z[j] + most;
@@ -192,15 +192,15 @@ RunnerResult solve_runner(const RunnerStage& at, State& s, Workspace& w) noexcep
     block[i] = {kMotions * i, kMotions, law[i].rank()};
   }
   const std::int32_t motions = kMotions * r.wheelsets;
-  BrakeHold* const hold = w.brake + r.first_stop;
-  find_stops(at, s, w, u, z_free + motions, z + motions, hold);
+  BrakeStep* const brake = w.brake + r.first_stop;
+  find_stops(at, s, w, u, z_free + motions, z + motions, brake);
   for (std::int32_t j = 0; j < r.stops; ++j) block[r.wheelsets + j] = {motions + j, 1, 1};
   const NewtonResult met = solve_laws(
       {interface_size(r), r.wheelsets + r.stops, r.compliance, block, z_free, w.newton,
        kRunnerTolerance},
       [&](int b, const double* at_z, double* f, const LawSlopes* slopes, double* steep) noexcept {
         const int stop = b - r.wheelsets;
-        if (stop >= 0) return stop_law(r.stop[stop], hold + stop, *at_z, f, slopes);
+        if (stop >= 0) return stop_law(r.stop[stop], brake + stop, *at_z, f, slopes);
         law[b].evaluate(at_z, f, slopes, steep);
       },
       force, z);
@@ -209,7 +209,7 @@ RunnerResult solve_runner(const RunnerStage& at, State& s, Workspace& w) noexcep
   for (int i = 0; i < r.wheelsets && met.status != NewtonStatus::converged; ++i)
     law[i].evaluate(z + kMotions * i, force + kMotions * i, nullptr, steep);
   move_by(r, force, u, reactions_of(at.model, s, r));
-  keep_brakes(r, z + motions, hold, s);
+  keep_brakes(r, z + motions, brake, s);
   RunnerResult result{status_of(met.status), met.iterations};
   for (int i = 0; i < r.wheelsets; ++i) {
     result.status = result.status | events_of(law[i]);

@@ -27,16 +27,16 @@ void find_motion(const RunnerStage& at, int wheelset, const State& s, const Work
 
 /// Displacements of a runner's stops at the contacts' instant.
 /// @param free, start  [stops] out
-/// @param hold         [stops] out: of brakes
+/// @param brake         [stops] out: of brakes
 void find_stops(const RunnerStage& at, const State& s, const Workspace& w, const double* u,
-                double* free, double* start, BrakeHold* hold) noexcept;
+                double* free, double* start, BrakeStep* brake) noexcept;
 
-/// The law of a stop, for solve_laws(). @param hold  of a brake
-void stop_law(const StopModel& stop, const BrakeHold* hold, double z, double* force,
+/// The law of a stop, for solve_laws(). @param brake  of a brake
+void stop_law(const StopModel& stop, const BrakeStep* brake, double z, double* force,
               const LawSlopes* slopes) noexcept;
 
-/// Lets the springs of brakes slide that are beyond their limits. @param z  [stops]
-void keep_brakes(const RunnerModel& runner, const double* z, const BrakeHold* hold,
+/// Lets those brakes slide whose spring is beyond its limit. @param z  [stops]
+void keep_brakes(const RunnerModel& runner, const double* z, const BrakeStep* brake,
                  State& s) noexcept;
 
 /// Adds the displacements by forces on the wheelsets and stops, and the forces of the constraints.

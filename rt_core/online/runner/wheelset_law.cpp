@@ -7,9 +7,7 @@
 namespace railstep {
 
 RunnerStage stage_of(const Model& model, const RunnerModel& runner, const Stage& stage) noexcept {
-  const Scheme& c = model.scheme;
-  const bool condensed = model.form == Form::condensed;
-  return {model, runner, stage, held_fraction(model), condensed ? 1. / (c.theta * c.dt) : c.kv};
+  return {model, runner, stage, held_fraction(model), law_rate(model)};
 }
 
 namespace {

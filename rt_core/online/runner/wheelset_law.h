@@ -10,8 +10,8 @@ struct RunnerStage {
   const RunnerModel& runner;
   const Stage& stage;
   double held;  // fraction of the stage at which the equation of motion holds
-  double
-      rate;  // change of a motion's rate at the contacts' instant by a change of the motion there
+  /// Change of a motion's rate at the contacts' instant by a change of the motion there.
+  double rate;
   double before(double fraction) const noexcept {
     return stage.before + (1. - fraction) * stage.span;
   }
@@ -34,13 +34,14 @@ struct WheelsetLaw {
   int wheelset;
   bool seated;
   RailsUnder rails;
-  /// Rates are these times the motions, of the wheelset and of the seats, and `rate_at_zero`.
+  /// Rates are the motions of the wheelset and of the seats times these, plus `rate_at_zero`.
   double rate, seat_rate;
   double ahead;        // speed of the wheelset along the track, m/s
   Rolling rolling[2];  // of its wheels
-  /// Motions are those at theta of a step. Rates are in its middle, this much earlier, s, and so
-  /// are yaw and y, on which creep depends: where it looks ahead of its rates the vehicle hunts too
-  /// late. z and roll, by which the contact's stiff spring is pressed, stay together.
+  /// Motions are those at theta of a step. Rates are those in its middle, this much earlier, s. Yaw
+  /// and y, on which creep depends, are also taken there: if they led their rates, hunting would
+  /// begin at too high a speed. z and roll, which press the contact's stiff spring, both stay at
+  /// theta.
   double later;
   /// On a rail that rises at this rate by its unevenness the contact moves ahead on the wheel, by
   /// as much as makes up for the wheel's own rise, m/s.
@@ -55,16 +56,16 @@ struct WheelsetLaw {
   bool at_edge;                  // a wheel touches at the end of a profile
 
   int size() const noexcept { return seated ? kMotions + 6 : kMotions; }
-  /// Scalars of the law: normal force, creep along and across of each cone or patch. If they are
-  /// more than its coordinates, these take their place. Known after find_contacts().
+  /// Scalars of the law: normal force, creep along and across of each cone or patch. If there are
+  /// more scalars than coordinates, the coordinates take their place. Known after find_contacts().
   int rank() const noexcept;
-  /// Finds where profiles touch, and holds it in all evaluations.
-  /// @param z  [size] motions that the step leads to as far as is known before it
+  /// Finds where profiles touch. All evaluations then keep this.
+  /// @param z  [size] motions to which the step leads, as predicted before it
   void find_contacts(const double* z) noexcept;
-  /// @param slopes  out: of the rank() scalars. How the directions of forces turn, and the creep
-  ///                moment, change it too little in a step to be worth their work. Null: none
-  /// @param steep   [rank] out: slopes of the normal forces, by cones as roots of depths; of other
-  ///                scalars they do not change
+  /// @param slopes  out: of the rank() scalars. The turn of the directions of forces and the creep
+  ///                moment are left out: they change the slopes too little in a step. Null: none
+  /// @param steep   [rank] out: slopes of the normal forces, by cones the roots of depths; entries
+  ///                of other scalars are left
   void evaluate(const double* z, double* force, const LawSlopes* slopes, double* steep) noexcept;
 
  private:

@@ -44,7 +44,7 @@ std::int32_t first_beyond(const State& s, std::int32_t first, std::int32_t last,
 /// First unknown of a body whose contact, orientation or joint has too large numbers, or -1. They
 /// are high powers of unknowns, which overflow long before the unknowns do.
 std::int32_t first_lost(const Model& model, const State& s, const Outputs& out) noexcept {
-  for (ContactId i = 0; i < contact_count(model); ++i)
+  for (const ContactId i : contacts(model))
     if (!is_moderate(out.contact_gap[i]) || !is_moderate(s.contact_force[i]))
       return bodies_of(model, i).first;
   const SystemModel& system = model.system;
@@ -77,8 +77,7 @@ void start_frame(const Model& model, const State& state, Outputs& out) noexcept 
   out.iterations = 0;
   out.force_residual = 0.;
   out.redundant_rows = 0;
-  for (ContactId i = 0; i < contact_count(model); ++i)
-    out.contact_force_peak[i] = out.contact_impulse[i] = 0.;
+  for (const ContactId i : contacts(model)) out.contact_force_peak[i] = out.contact_impulse[i] = 0.;
 }
 
 void collect_solve(const CoupleResult& met, Outputs& out) noexcept {
@@ -90,7 +89,7 @@ void collect_solve(const CoupleResult& met, Outputs& out) noexcept {
 void collect(const Model& model, const State& s, const CoupleResult& met, Outputs& out) noexcept {
   collect_solve(met, out);
   const double offset = track_offset(model, s.steps + 1);
-  for (ContactId i = 0; i < contact_count(model); ++i) {
+  for (const ContactId i : contacts(model)) {
     const double force = s.contact_force[i];
     out.contact_force[i] = force;
     out.contact_impulse[i] += force * model.scheme.dt;
@@ -129,7 +128,7 @@ void publish(const Model& model, const State& state, Outputs& outputs) noexcept 
   residual_displacements(model, force, count,
                          model.loads + wheel_count(model) + model.external_wheels, moved);
   for (std::int32_t i = 0; i < model.loads; ++i) outputs.load_deflection[i] += moved[i];
-  for (std::int32_t i = 0; i < wheel_count(model); ++i) {
+  for (const ContactId i : wheels(model)) {
     const RailForce& own = force[model.loads + i];
     outputs.contact_rail_z[i] = 0.;
     if (!outputs.contact_on_rail[i]) continue;
@@ -154,7 +153,7 @@ void start_outputs(const Model& model, const State& state, Outputs& outputs) noe
   for (std::int32_t f = 0; f < model.flanges; ++f)
     find_flanges(model, model.flange[f], standing(model, state),
                  contact + flange_contact(model, flange_number(f, 0)));
-  for (ContactId i = 0; i < contact_count(model); ++i) {
+  for (const ContactId i : contacts(model)) {
     outputs.contact_force[i] = outputs.contact_force_mean[i] = outputs.contact_force_peak[i] =
         state.contact_force[i];
     outputs.contact_gap[i] = -contact[i].penetration;
@@ -171,7 +170,7 @@ void start_outputs(const Model& model, const State& state, Outputs& outputs) noe
   publish(model, state, outputs);
   RailForce force[kMaxRailForces];
   const int count = rail_forces(model, outputs, force);
-  for (std::int32_t i = 0; i < wheel_count(model); ++i)
+  for (const ContactId i : wheels(model))
     if (outputs.contact_on_rail[i])
       outputs.contact_gap[i] -= residual_displacement(model, force, count, model.loads + i);
 }

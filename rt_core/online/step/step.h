@@ -27,9 +27,9 @@ inline constexpr std::size_t kStepStack = std::size_t{128} << 10;
 /// model can close its contacts in that frame. At its end the displacements of their points are, to
 /// rounding,
 ///   free + compliance * forces,
-/// or beside other contacts to first order in the forces, of which each is then tried by a step,
-/// with 3 n + d for direction d of wheel n. The state is not changed. Places among the inputs must
-/// be those of the frame; forces are not used.
+/// with 3 n + d for direction d of wheel n. Beside other contacts this holds to first order in the
+/// forces, and a step is tried for each force. The state is not changed. Places among the inputs
+/// must be those of the frame; forces are not used.
 /// @param free        [3 external_wheels] m; 0 off the rail
 /// @param compliance  [3 external_wheels][3 external_wheels] m/N, symmetric; 0 off the rail
 /// @returns status of the inputs and of the step without forces

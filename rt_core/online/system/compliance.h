@@ -3,12 +3,12 @@
 
 namespace railstep {
 
-/// Factor L U of a matrix that is symmetric, or nearly so. Pivots come from the diagonal: among the
-/// leading rows the one with most left of it first, then the others in their order. A leading row
-/// with less than tolerance times its own diagonal left depends on the rows before and is left out
-/// (its solution is 0). Both sides of a matrix over rows may differ (slope S^-1 gradient'); the
-/// part left for rows that nearly depend on each other is then still near plus or minus a definite
-/// one.
+/// Factor L U of a matrix that is symmetric, or nearly so. Pivots come from the diagonal. Among the
+/// leading rows the one with the largest remaining diagonal comes first; then the others come in
+/// their order. A leading row depends on the rows before if less than tolerance times its own
+/// diagonal remains; it is left out (its solution is 0). A matrix over rows may be unsymmetric
+/// (slope S^-1 gradient'). The remaining part of rows that nearly depend on each other is then
+/// still near a positive or a negative definite matrix.
 struct Pivoted {
   double* matrix;       // [n][n] in, L under and U on and above the diagonal out
   double* scale;        // [n] diagonal before, its magnitude

@@ -80,11 +80,6 @@ PointMotion sensor_motion(const Model& model, const State& state, std::int32_t s
   return point_motion(model, state, sensor);
 }
 
-void body_rotation(const State& state, std::int32_t body, double* matrix) noexcept {
-  const FloatMode flushed_to_zero;
-  rotation_matrix(state.quaternion + 4 * body, matrix);
-}
-
 JointForce joint_force(const Model& model, const State& state, std::int32_t joint) noexcept {
   const FloatMode flushed_to_zero;
   return sum_of_rows(model, state, joint);

@@ -13,9 +13,6 @@ struct PointMotion {
 /// Motion of a system's sensor in a state.
 PointMotion sensor_motion(const Model& model, const State& state, std::int32_t sensor) noexcept;
 
-/// Rotation of a body, [9], body axes to ground.
-void body_rotation(const State& state, std::int32_t body, double* matrix) noexcept;
-
 /// In the energy-momentum scheme forces and accelerations are those of the last step's middle.
 /// Action of one joint's rows or springs on part B in a state: the resulting force, and the moment
 /// about the joint's point on B, ground axes, N and N m.

@@ -50,7 +50,7 @@ int rail_forces(const Model& model, const Outputs& outputs, RailForce* forces) n
   for (std::int32_t i = 0; i < model.loads; ++i)
     forces[count++] =
         rail_force(model, model.load[i].load_point, outputs.load_place[i], outputs.load_force[i]);
-  for (std::int32_t i = 0; i < wheel_count(model); ++i)
+  for (const ContactId i : wheels(model))
     forces[count++] = rail_force(model, model.contact[i].load_point, outputs.contact_place[i],
                                  outputs.contact_on_rail[i] ? -outputs.contact_force[i] : 0.);
   for (std::int32_t i = 0; i < model.external_wheels; ++i)
@@ -59,11 +59,11 @@ int rail_forces(const Model& model, const Outputs& outputs, RailForce* forces) n
                    outputs.external_on_rail[i] ? outputs.external_force[i] : 0.);
   for (std::int32_t n = 0; n < model.runners; ++n) {
     const RunnerModel& runner = model.runner[n];
-    const std::int32_t first = 2 * runner.first_wheelset;
+    const std::int32_t first = WheelId{runner.first_wheelset, 0}.number();
     for (std::int32_t i = first; i < first + 2 * runner.wheelsets; ++i)
       if (outputs.wheel_on_rail[i])
-        forces[count++] = rail_force(model, runner.load_point[i % 2], outputs.wheel_place[i],
-                                     -outputs.wheel_q[i]);
+        forces[count++] = rail_force(model, runner.load_point[wheel_of(i).side],
+                                     outputs.wheel_place[i], -outputs.wheel_q[i]);
   }
   return count;
 }

@@ -6,7 +6,7 @@
 
 #include "offline/analysis/statics.h"
 #include "online/track/track_sensor.h"
-#include "support/condensed.h"
+#include "support/condensed_tracks.h"
 
 using namespace railstep;
 using Catch::Matchers::WithinAbs;

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "online/contact/wheel.h"
-#include "support/condensed.h"
+#include "support/condensed_tracks.h"
 
 using namespace railstep;
 using Catch::Matchers::WithinRel;

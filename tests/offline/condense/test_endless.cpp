@@ -6,7 +6,7 @@
 #include "offline/track/functional.h"
 #include "online/model/progress.h"
 #include "online/track/track_sensor.h"
-#include "support/endless.h"
+#include "support/endless_tracks.h"
 
 using namespace railstep;
 

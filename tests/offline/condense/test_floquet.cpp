@@ -7,7 +7,7 @@
 #include "offline/analysis/statics.h"
 #include "offline/condense/floquet.h"
 #include "online/track/residual.h"
-#include "support/endless.h"
+#include "support/endless_tracks.h"
 
 using namespace railstep;
 

@@ -7,7 +7,7 @@
 
 #include "offline/vehicle/kinds.h"
 #include "online/track/track_sensor.h"
-#include "support/condensed.h"
+#include "support/condensed_tracks.h"
 #include "support/sections.h"
 #include "support/vehicles.h"
 

@@ -5,7 +5,7 @@
 
 #include "online/track/track_sensor.h"
 #include "support/block_mutations.h"
-#include "support/condensed.h"
+#include "support/condensed_tracks.h"
 #include "support/fine_track.h"
 
 using namespace railstep;

@@ -13,7 +13,7 @@
 #include "offline/analysis/statics.h"
 #include "offline/condense/damped_shapes.h"
 #include "offline/condense/modal.h"
-#include "support/condensed.h"
+#include "support/condensed_tracks.h"
 #include "support/sections.h"
 
 using namespace railstep;

@@ -15,7 +15,7 @@
 #include "offline/receptance/exact_rail.h"
 #include "offline/receptance/full_order.h"
 #include "scene/scene.h"
-#include "support/condensed.h"
+#include "support/condensed_tracks.h"
 #include "support/foundation.h"
 
 using namespace railstep;

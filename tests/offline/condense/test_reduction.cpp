@@ -13,7 +13,7 @@
 #include "offline/condense/component.h"
 #include "offline/condense/reduction.h"
 #include "offline/pack/accuracy.h"
-#include "support/condensed.h"
+#include "support/condensed_tracks.h"
 #include "support/sections.h"
 
 using namespace railstep;

@@ -6,7 +6,7 @@
 
 #include "offline/analysis/statics.h"
 #include "offline/pack/time_schemes.h"
-#include "support/condensed.h"
+#include "support/condensed_tracks.h"
 #include "support/rigid_track.h"
 
 using namespace railstep;

@@ -6,6 +6,7 @@
 #include "offline/element/matrices.h"
 #include "offline/math/gauss.h"
 #include "offline/section/moments.h"
+#include "support/beam_energy.h"
 #include "support/rest_shapes.h"
 #include "support/sections.h"
 

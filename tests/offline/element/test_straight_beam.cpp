@@ -6,7 +6,7 @@
 
 #include "offline/beam/equilibrium.h"
 #include "offline/element/straight_beam.h"
-#include "support/straight_rows.h"
+#include "support/stored_kernels.h"
 
 using namespace railstep;
 

@@ -30,6 +30,15 @@ const Spectrum& named(const char* name, Geometry geometry) {
   return find_spectra(name)->of[static_cast<std::size_t>(geometry)];
 }
 
+/// The signal at the start of each of its intervals.
+std::vector<double> sampled(const Signal& signal) {
+  const SignalModel model = signal.model();
+  std::vector<double> values;
+  for (int k = 0; k < model.intervals; ++k)
+    values.push_back(signal_at(model, k * signal.step).value);
+  return values;
+}
+
 /// n samples of one period of a wave, starting at its phase (in periods).
 std::vector<double> wave(int n, double phase) {
   std::vector<double> samples(static_cast<std::size_t>(n));
@@ -188,7 +197,7 @@ TEST_CASE(
     CHECK(amplitude(signal, 67) < 1e-7);  // shorter than 3 m
     double square = 0.;
     const int samples = signal.model().intervals;
-    for (const double z : sampled(signal, 0., signal.step, samples)) square += z * z / samples;
+    for (const double z : sampled(signal)) square += z * z / samples;
     // Whole waves fill the band: at both ends one more or less of 59.
     CHECK(std::sqrt(square) == Approx(deviation(spectrum, 3., 25.)).epsilon(.05));
   }
@@ -201,8 +210,7 @@ TEST_CASE("a generated signal depends on its seed and its stream only") {
   const Signal first = generate(spectrum, options, 0);
   CHECK(first.coefficient == generate(spectrum, options, 0).coefficient);
   const auto correlation = [&](const Signal& other) {
-    const std::vector<double> a = sampled(first, 0., first.step, first.model().intervals);
-    const std::vector<double> b = sampled(other, 0., first.step, first.model().intervals);
+    const std::vector<double> a = sampled(first), b = sampled(other);
     double ab = 0., aa = 0., bb = 0.;
     for (std::size_t k = 0; k < a.size(); ++k) {
       ab += a[k] * b[k];

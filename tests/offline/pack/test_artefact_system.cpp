@@ -8,7 +8,7 @@
 
 #include "offline/system/pack_system.h"
 #include "online/system/sensor.h"
-#include "support/artefact.h"
+#include "support/block_fields.h"
 #include "support/block_mutations.h"
 
 using namespace railstep;

@@ -7,7 +7,7 @@
 #include "offline/condense/flexibility.h"
 #include "offline/pack/time_schemes.h"
 #include "online/math/finite.h"
-#include "support/condensed.h"
+#include "support/condensed_tracks.h"
 
 using namespace railstep;
 using Catch::Matchers::WithinAbs;

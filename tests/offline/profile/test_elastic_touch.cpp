@@ -27,7 +27,7 @@ struct OnCrown {
       gap.push_back(y * y / (2. * crown));
     }
     StripPatch patch{gap.data(), strips + 1, 1. * middle, {}, width, .46, modulus};
-    patch.hold = hold_of(patch, approach);
+    patch.collocation = collocation_of(patch, approach);
     return patch_force(patch, approach);
   }
 };
@@ -76,7 +76,7 @@ TEST_CASE("the stiffness of a patch is the slope of its force", "[profile]") {
     }
     StripPatch patch{gap, 40, 20., {}, .5e-3, .46, kSteelModulus};
     const double approach = 1.2e-4 * part(engine), h = 1e-11;
-    patch.hold = hold_of(patch, 1.2 * part(engine) * approach);
+    patch.collocation = collocation_of(patch, 1.2 * part(engine) * approach);
     const PatchForce at = patch_force(patch, approach);
     const double slope =
         (patch_force(patch, approach + h).normal - patch_force(patch, approach - h).normal) /

@@ -59,25 +59,28 @@ TEST_CASE("a tolerance beyond a straight line gives that line", "[profile]") {
 }
 
 TEST_CASE("points of no running surface are refused with their place", "[profile]") {
-  const auto refused = [](std::vector<Point> points, double tolerance, const char* words) {
-    CHECK_THROWS_WITH(through(smoothed(points, tolerance).points), Contains(words));
+  const auto refused = [](std::vector<Point> points, double tolerance, const char* id,
+                          const char* number) {
+    CHECK_THROWS_WITH(through(smoothed(points, tolerance).points),
+                      Contains(number) && Contains(id));
   };
-  refused({{0., 0.}, {1e-3, 0.}, {2e-3, 0.}}, 0., "3 points");
-  CHECK_THROWS_WITH(through(std::vector<Point>{{0., 0.}}), Contains("1 points"));
+  refused({{0., 0.}, {1e-3, 0.}, {2e-3, 0.}}, 0., "E-POINTS-01", " 3 ");
+  CHECK_THROWS_WITH(through(std::vector<Point>{{0., 0.}}),
+                    Contains(" 1 ") && Contains("E-POINTS-01"));
   std::vector<Point> points = circle(0.);
   points[7][1] = std::nan("");
-  refused(points, 0., "point 8 is not finite");
+  refused(points, 0., "E-POINTS-02", " 8 ");
   points = circle(0.);
   points[9][0] = points[8][0];
-  refused(points, 0., "point 10");
+  refused(points, 0., "E-POINTS-03", " 10 ");
   points = circle(0.);
   points.erase(points.begin() + 20, points.begin() + 40);
-  refused(points, 0., "gap from -10.5");
+  refused(points, 0., "E-POINTS-04", " -10.5");
   points = circle(0.);
   for (std::size_t i = 50; i < points.size(); ++i)
     points[i][1] -= .8 * (points[i][0] - points[49][0]);
-  refused(points, 0., "rad at 4.5");
+  refused(points, 0., "E-POINTS-05", " 4.5");
   points = circle(2e-6, 100);
   points[75][1] += 1e-4;
-  refused(points, 5e-6, "the point at -5.0");
+  refused(points, 5e-6, "E-POINTS-06", " -5.0");
 }

@@ -2,7 +2,7 @@
 #include <catch2/catch.hpp>
 
 #include "offline/analysis/statics.h"
-#include "support/condensed.h"
+#include "support/condensed_tracks.h"
 #include "support/system_run.h"
 
 using namespace railstep;

@@ -1,7 +1,7 @@
 #include <Eigen/Dense>
 #include <catch2/catch.hpp>
 
-#include "support/condensed.h"
+#include "support/condensed_tracks.h"
 #include "support/system_run.h"
 
 using namespace railstep;

@@ -7,7 +7,7 @@
 #include "offline/beam/equilibrium.h"
 #include "offline/beam/track_structure.h"
 #include "offline/pack/accuracy.h"
-#include "support/condensed.h"
+#include "support/condensed_tracks.h"
 #include "support/mirror.h"
 
 using namespace railstep;

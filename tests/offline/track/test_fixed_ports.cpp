@@ -8,7 +8,7 @@
 #include "offline/analysis/statics.h"
 #include "offline/energy/energy_account.h"
 #include "online/contact/ports.h"
-#include "support/artefact.h"
+#include "support/block_fields.h"
 #include "support/one_sided_tracks.h"
 #include "support/rail_at.h"
 #include "support/scene_run.h"

@@ -9,7 +9,7 @@
 #include "offline/analysis/modes.h"
 #include "offline/analysis/statics.h"
 #include "online/track/track_sensor.h"
-#include "support/condensed.h"
+#include "support/condensed_tracks.h"
 #include "support/fine_track.h"
 
 using namespace railstep;

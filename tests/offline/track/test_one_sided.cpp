@@ -11,8 +11,6 @@ using namespace railstep;
 using Catch::Matchers::WithinAbs;
 using Catch::Matchers::WithinRel;
 
-namespace {}  // namespace
-
 TEST_CASE("a gap under the loaded seat closes and carries as the reference says", "[supports]") {
   // R6 has a gap of 0.5 mm, printed to 7 digits; 1e-3 is the case's bound (H7).
   const Statics statics(with_gap(r6_track(), 20, .5e-3));

@@ -8,7 +8,7 @@
 #include "offline/condense/flexibility.h"
 #include "offline/track/functional.h"
 #include "offline/track/squeeze.h"
-#include "support/condensed.h"
+#include "support/condensed_tracks.h"
 #include "support/mirror.h"
 #include "support/sections.h"
 

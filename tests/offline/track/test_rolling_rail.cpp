@@ -9,7 +9,7 @@
 #include "online/step/step.h"
 #include "online/track/p_delta.h"
 #include "run/simulation.h"
-#include "support/condensed.h"
+#include "support/condensed_tracks.h"
 #include "support/fine_track.h"
 
 using namespace railstep;

@@ -7,7 +7,7 @@
 
 #include "offline/analysis/modes.h"
 #include "offline/analysis/statics.h"
-#include "support/condensed.h"
+#include "support/condensed_tracks.h"
 #include "support/fine_track.h"
 #include "support/rail_at.h"
 #include "support/reference_tracks.h"
@@ -15,8 +15,6 @@
 using namespace railstep;
 using Catch::Matchers::WithinAbs;
 using Catch::Matchers::WithinRel;
-
-namespace {}  // namespace
 
 TEST_CASE("the deflection over missing supports is that of the reference", "[supports]") {
   // R6 is printed to 7 digits; 1e-3 is the case's bound (its beam is Timoshenko's, this one is the

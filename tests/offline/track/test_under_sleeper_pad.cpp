@@ -14,7 +14,7 @@
 #include "offline/track/fixed_port.h"
 #include "scene/scene.h"
 #include "support/bad_input.h"
-#include "support/condensed.h"
+#include "support/condensed_tracks.h"
 #include "support/reference_tracks.h"
 #include "support/traced.h"
 

@@ -6,7 +6,7 @@
 
 #include "offline/analysis/decay_length.h"
 #include "online/track/shift_window.h"
-#include "support/endless.h"
+#include "support/endless_tracks.h"
 
 using namespace railstep;
 

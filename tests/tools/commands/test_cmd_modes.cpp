@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -29,7 +30,9 @@ Listed modes_of(const std::string& words) {
   REQUIRE(ran.code == 0);
   CHECK(ran.err.empty());
   const auto json = nlohmann::json::parse(ran.out);
-  CHECK(json.size() == 2);
+  CHECK(json.size() == 4);
+  CHECK(json.at("errors").empty());
+  CHECK(json.at("warnings").empty());
   Listed found{json.at("frequencies_hz").get<std::vector<double>>(),
                json.at("damping_ratios").get<std::vector<double>>()};
   CHECK(found.hz.size() == found.ratio.size());
@@ -156,6 +159,25 @@ TEST_CASE("modes refuses a scene that makes no track", "[modes]") {
   // A scene of few unknowns lists all its modes: 3 heights less two pins, and 3 slopes.
   const std::string coarse = bay + " --count 1000 --set track.elements_per_bay=1";
   CHECK(modes_of(coarse).hz.size() == 4);
+}
+
+TEST_CASE("the warning about a lopsided section is in the JSON too", "[modes]") {
+  const auto section = fresh_folder("modes_lopsided") / "section.toml";
+  std::ofstream(section) << "schema = 1\n[section]\narea_m2 = 7.67e-3\ninertia_y_m4 = 3.038e-5\n"
+                            "inertia_z_m4 = 5.12e-6\ntorsion_m4 = 2e-6\nshear_factor_y = 0.5\n"
+                            "shear_factor_z = 0.4\ncentroid_height_m = 0.08\n"
+                            "shear_centre_height_m = 0.04\nheight_m = 0.172\n[asymmetry]\n"
+                            "share_of_area = 0.1\nproduct_of_inertia_m4 = 2e-6\n"
+                            "centroid_offset_m = 1e-3\nshear_centre_offset_m = 1e-3\n";
+  const Ran ran = railstep_program("modes " + shipped("free_rail") +
+                                   " --count 1 --json --set 'rail={section=\"" + section.string() +
+                                   "\", young_pa=2.1e11, density_kg_per_m3=7850}'");
+  CAPTURE(ran.err);
+  REQUIRE(ran.code == 0);
+  const auto told = nlohmann::json::parse(ran.out);
+  REQUIRE(told["warnings"].size() == 1);
+  CHECK(told["warnings"][0]["id"] == "W-SECTION-01");
+  CHECK_THAT(ran.err, Catch::Contains(told["warnings"][0]["text"].get<std::string>()));
 }
 
 TEST_CASE("run and condense refuse a scene without [step]", "[modes]") {

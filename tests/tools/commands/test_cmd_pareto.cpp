@@ -252,7 +252,10 @@ TEST_CASE("tune refuses an error or a deadline that cannot be met", "[tune]") {
   const Ran error = railstep_program("tune " + kMovingLoad + few + " --max-error 5e-4 --json");
   CHECK(error.code == 1);
   CHECK_THAT(error.err, Contains("the mesh: ") && Contains("E-STUDY-15"));
-  CHECK(json::parse(error.out)["choice"].is_null());
+  const json told = json::parse(error.out);
+  CHECK(told["choice"].is_null());
+  REQUIRE(told["errors"].size() == 1);
+  CHECK(told["errors"][0]["id"] == "E-STUDY-15");
   const Ran deadline =
       railstep_program("tune " + kMovingLoad + few + " --max-error 2e-2 --deadline-us 1e-3 --json");
   CHECK(deadline.code == 1);

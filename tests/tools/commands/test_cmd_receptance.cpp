@@ -13,7 +13,7 @@
 #include "offline/receptance/full_order.h"
 #include "online/track/track_sensor.h"
 #include "scene/scene.h"
-#include "support/condensed.h"
+#include "support/condensed_tracks.h"
 #include "support/plotted.h"
 #include "support/program.h"
 #include "support/shipped.h"

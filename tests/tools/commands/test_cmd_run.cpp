@@ -201,7 +201,7 @@ TEST_CASE("a rail that sinks farther than real tracks do brings a note about uni
   CHECK_THAT(railstep_program(short_run).err, !Contains(sank));
   const Ran kilonewtons = railstep_program(short_run + " --set support.stiffness_z_n_per_m=30e3");
   CHECK(kilonewtons.code == 0);
-  CHECK_THAT(kilonewtons.err, Contains("note: ") && Contains(sank));
+  CHECK_THAT(kilonewtons.err, Contains(sank));
   const auto warnings = nlohmann::json::parse(kilonewtons.out).at("warnings");
   REQUIRE(warnings.size() == 1);
   CHECK(warnings[0].at("id") == sank);
@@ -213,7 +213,7 @@ TEST_CASE("constants that no shape has bring a note about units", "[run]") {
   CHECK_THAT(railstep_program(hammer).err, !Contains(asked));
   const Ran hundredfold = railstep_program(hammer + " --set rail.constants.inertia_y_m4=3.0383e-3");
   CHECK(hundredfold.code == 0);
-  CHECK_THAT(hundredfold.err, Contains("note: inertia_y_m4 = 0.0030383") && Contains(asked));
+  CHECK_THAT(hundredfold.err, Contains("inertia_y_m4 = 0.0030383") && Contains(asked));
   CHECK(nlohmann::json::parse(hundredfold.out).at("warnings").size() == 1);
 }
 
@@ -258,6 +258,20 @@ TEST_CASE("a state that is no longer finite ends the run, names its place and ke
   REQUIRE(record.first_bad_unknown >= run.model().line[1].first);
   CHECK_THAT(unknown_place(run, record.first_bad_unknown), Contains("of rail node"));
   CHECK(rows_of(text_of(file)).row.size() == 12);
+}
+
+TEST_CASE("a run whose state stops being finite ends with an error that has an id", "[run]") {
+  // 1e14 N lift the rail by more than 1024 m within a few steps.
+  const Ran ran = railstep_program("run " + kMovingLoad +
+                                   " --json --duration 0.01 --set 'load[0].force_z_n=1e8' --set "
+                                   "'load[0].table=[[0, 1e6]]'");
+  CAPTURE(ran.err);
+  CHECK(ran.code == 1);
+  CHECK_THAT(ran.err, Contains("error: nonfinite_state: ") && Contains("[E-RUN-16]"));
+  const auto told = nlohmann::json::parse(ran.out);
+  CHECK(told["status"].back() == "nonfinite_state");
+  REQUIRE(told["errors"].size() == 1);
+  CHECK(told["errors"][0]["id"] == "E-RUN-16");
 }
 
 TEST_CASE("the ways to give a section agree where they give the same section", "[run]") {

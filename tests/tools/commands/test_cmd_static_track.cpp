@@ -121,7 +121,11 @@ TEST_CASE("without an equilibrium the exit code is 1 and the history is printed"
                                    "static.most_load_halvings=2 --json --shape '" +
                                    file + "'");
   CHECK(ran.code == 1);
-  CHECK(nlohmann::json::parse(ran.out)["points"].empty());
+  const auto told = nlohmann::json::parse(ran.out);
+  CHECK(told["points"].empty());
+  REQUIRE(told["errors"].size() == 1);
+  CHECK(told["errors"][0]["id"] == "E-STATIC-02");
+  CHECK(told["warnings"].empty());
   CHECK_THAT(ran.err, Contains("E-STATIC-02") && Contains("load factor"));
   CHECK_THAT(ran.err, Contains("0.25"));  // the last of two halvings
   CHECK_FALSE(std::filesystem::exists(file));

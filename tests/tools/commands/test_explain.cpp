@@ -38,6 +38,13 @@ TEST_CASE("explain says more about an id and about a status bit", "[explain][cli
   CHECK_THAT(bit.out, StartsWith("off_rail\n\n") && Contains("track.bays"));
 }
 
+TEST_CASE("explain takes capitals and small letters for the same", "[explain][cli]") {
+  CHECK(railstep_program("explain e-key-05").out == railstep_program("explain E-KEY-05").out);
+  CHECK_THAT(railstep_program("explain OFF_RAIL").out, StartsWith("off_rail\n\n"));
+  const BadInput bad("explain_case");
+  bad.refused("explain e-key-5", {"'e-key-5'", "'E-KEY-05'", "E-CLI-14"});
+}
+
 TEST_CASE("explain lists all ids and status bits, one a line", "[explain][cli]") {
   const Ran ran = railstep_program("explain");
   CHECK(ran.code == 0);

@@ -12,6 +12,7 @@
 #include "support/bad_input.h"
 #include "support/loopback.h"
 #include "support/started.h"
+#include "support/wait.h"
 
 using namespace railstep;
 using Catch::Contains;
@@ -64,7 +65,10 @@ class PacedRun {
   void send(const Bytes& bytes) const { peer_.send(bytes, port_); }
   /// Sends from another sender.
   void send_as_stranger(const Bytes& bytes) const { LoopbackSocket().send(bytes, port_); }
+  /// The next outputs; fails the test if they still come long after the run should have ended, so
+  /// that no loop over them is endless.
   Answer receive() const {
+    if (deadline_.passed()) FAIL("outputs still come after " << kPatience.count() << " s");
     std::vector<double> values(outputs_.size());
     const auto head = decode(peer_.receive(), PacketKind::outputs, names_sum(outputs_),
                              static_cast<std::uint32_t>(outputs_.size()), values.data());
@@ -110,6 +114,7 @@ class PacedRun {
   std::uint16_t port_ = free_port();
   std::vector<std::string> outputs_;
   Ran ran_{};
+  Deadline deadline_;
   std::unique_ptr<Started> hil_;
 };
 

@@ -170,7 +170,13 @@ TEST_CASE("a silence ends with a safe stop and exit code 1", "[hil][cli]") {
   CAPTURE(ran.err, client.err);
   CHECK(ran.code == 1);
   CHECK_THAT(ran.err, Contains("E-HIL-18"));
-  CHECK(told(ran)["safe_stop_frame"].get<int>() >= 20);
+  const auto result = told(ran);
+  CHECK(result["safe_stop_frame"].get<int>() >= 20);
+  REQUIRE(result["errors"].size() == 1);
+  CHECK(result["errors"][0]["id"] == "E-HIL-18");
+  std::size_t refused = 0;  // each setting that the system refused is a warning
+  for (const auto& setting : result["realtime"]) refused += setting == "done" ? 0 : 1;
+  CHECK(result["warnings"].size() == refused);
 }
 
 TEST_CASE("a run without inputs in time ends before its first frame", "[hil][cli]") {

@@ -53,7 +53,9 @@ TEST_CASE("a signal ends a run between two frames and the program says so", "[hi
   CAPTURE(ran.out, ran.err);
   CHECK(ran.code == 1);
   CHECK_THAT(ran.err, Contains("E-HIL-16"));
-  CHECK(nlohmann::json::parse(ran.out)["interrupted"] == true);
+  const auto told = nlohmann::json::parse(ran.out);
+  CHECK(told["interrupted"] == true);
+  CHECK(told["errors"].at(0)["id"] == "E-HIL-16");
 }
 
 TEST_CASE("a signal ends a run within a period of any length", "[hil][cli]") {

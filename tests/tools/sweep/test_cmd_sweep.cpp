@@ -79,8 +79,11 @@ TEST_CASE("the rows of a sweep equal runs made one by one", "[sweep]") {
   REQUIRE(ran.code == 0);
   CHECK(ran.err.empty());
   const auto json = nlohmann::json::parse(ran.out);
-  CHECK(json ==
-        nlohmann::json{{"runs", 6}, {"failed", 0}, {"table", (out / "table.csv").string()}});
+  CHECK(json == nlohmann::json{{"runs", 6},
+                               {"failed", 0},
+                               {"table", (out / "table.csv").string()},
+                               {"errors", nlohmann::json::array()},
+                               {"warnings", nlohmann::json::array()}});
   const auto rows = table_of(out / "table.csv");
   REQUIRE(rows.size() == 6);
   const std::vector<std::string> stiffness = {"2e7", "3e7", "5e7"}, speed = {"20", "30"};
@@ -218,7 +221,10 @@ TEST_CASE("a run that fails has its reason in the table and the sweep goes on", 
   CHECK(ran.code == 1);
   CHECK_THAT(ran.err, Contains("2 of 4 runs") && Contains("run 2 (rail.axial_force_n=-1e9") &&
                           Contains("E-SWEEP-16"));
-  CHECK(nlohmann::json::parse(ran.out)["failed"] == 2);
+  const auto told = nlohmann::json::parse(ran.out);
+  CHECK(told["failed"] == 2);
+  REQUIRE(told["errors"].size() == 1);
+  CHECK(told["errors"][0]["id"] == "E-SWEEP-16");
   auto rows = table_of(out / "table.csv");
   REQUIRE(rows.size() == 4);
   CHECK_THAT(rows[2]["error"], Contains("buckle") && Catch::StartsWith("moving_load.toml"));

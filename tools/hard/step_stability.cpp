@@ -1,4 +1,4 @@
-#include "hard/stability.h"
+#include "hard/step_stability.h"
 
 #include <fmt/core.h>
 

@@ -1,4 +1,4 @@
-#include "answer/running.h"
+#include "answer/scene_running.h"
 
 #include <fmt/core.h>
 

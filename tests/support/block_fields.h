@@ -6,7 +6,7 @@
 #include "online/math/sha256.h"
 #include "online/model/load_model.h"
 #include "online/track/track_sensor.h"
-#include "support/condensed.h"
+#include "support/condensed_tracks.h"
 
 namespace railstep {
 
