@@ -8,12 +8,13 @@
 #include "online/math/tiny.h"
 #include "online/step/step.h"
 #include "run/simulation.h"
+#include "support/sanitized.h"
 
 using namespace railstep;
 
 namespace {
 
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__) || !defined(__OPTIMIZE__)
+#if defined(RAILSTEP_SANITIZED) || !defined(__OPTIMIZE__)
 constexpr std::int64_t kSteps = 100'000;
 #else
 constexpr std::int64_t kSteps = 1'000'000;

@@ -11,6 +11,7 @@
 #include "online/step/step.h"
 #include "online/track/track_sensor.h"
 #include "run/simulation.h"
+#include "support/sanitized.h"
 
 using namespace railstep;
 
@@ -47,7 +48,7 @@ std::size_t stack_of(const std::function<void()>& work) {
 
 TEST_CASE("a painted stack shows how much is used, so this bound can fail", "[stack]") {
   const std::size_t little = stack_of([] {});
-#if !defined(__SANITIZE_ADDRESS__)  // which may put a function's arrays elsewhere
+#if !defined(RAILSTEP_SANITIZED)  // which may put a function's arrays elsewhere
   const std::size_t much = stack_of([] {
     volatile unsigned char taken[100'000];
     for (volatile unsigned char& byte : taken) byte = 1;
@@ -79,7 +80,7 @@ TEST_CASE("a frame of every scene fits the stack that the step states", "[stack]
     std::printf("%-20s %7zu bytes of stack\n", entry.path().stem().c_str(), used - idle);
     most = std::max(most, used - idle);
   }
-#if !defined(__SANITIZE_ADDRESS__) && defined(__OPTIMIZE__)
+#if !defined(RAILSTEP_SANITIZED) && defined(__OPTIMIZE__)
   CHECK(most <= kStepStack);
 #endif
   CHECK(most > 4096);  // contacts are solved on the stack

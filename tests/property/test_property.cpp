@@ -6,6 +6,7 @@
 #include <string>
 
 #include "suite.h"
+#include "support/sanitized.h"
 
 using namespace railstep::property;
 
@@ -13,7 +14,7 @@ namespace {
 
 // All take two minutes in the release build. Slow builds take ten times as long, so they run a
 // tenth of the scenes.
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__) || !defined(__OPTIMIZE__)
+#if defined(RAILSTEP_SANITIZED) || !defined(__OPTIMIZE__)
 constexpr int kFewer = 10;
 #else
 constexpr int kFewer = 1;

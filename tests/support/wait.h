@@ -6,11 +6,13 @@
 #include <functional>
 #include <string>
 
+#include "support/sanitized.h"
+
 namespace railstep {
 
 /// Longest time that a test waits, however busy the machine is. ctest ends a test that hangs after
 /// more than twice that (CMakeLists.txt).
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__) || !defined(__OPTIMIZE__)
+#if defined(RAILSTEP_SANITIZED) || !defined(__OPTIMIZE__)
 inline constexpr std::chrono::seconds kPatience{800};
 #else
 inline constexpr std::chrono::seconds kPatience{120};

@@ -45,9 +45,6 @@ inline ContactIds upright_wheels(const Model& model) noexcept {
 }
 /// Treads and upright wheels.
 inline ContactIds wheels(const Model& model) noexcept { return {0, wheel_count(model)}; }
-inline ContactIds flanges(const Model& model) noexcept {
-  return {wheel_count(model), contact_count(model)};
-}
 inline ContactIds contacts(const Model& model) noexcept { return {0, contact_count(model)}; }
 
 // The track is touched along rows: one of each contact, then those of the seats of runners' wheels,

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "support/passive_run.h"
+#include "support/sanitized.h"
 #include "text/read.h"
 
 using namespace railstep;
@@ -15,7 +16,7 @@ using namespace railstep;
 namespace {
 
 // Two million steps in all; each takes some twenty times as long under a sanitizer.
-#ifdef __SANITIZE_ADDRESS__
+#ifdef RAILSTEP_SANITIZED
 constexpr int kShare = 20;
 #else
 constexpr int kShare = 1;

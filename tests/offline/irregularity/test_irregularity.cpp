@@ -34,6 +34,7 @@ const Spectrum& named(const char* name, Geometry geometry) {
 std::vector<double> sampled(const Signal& signal) {
   const SignalModel model = signal.model();
   std::vector<double> values;
+  values.reserve(static_cast<std::size_t>(model.intervals));
   for (int k = 0; k < model.intervals; ++k)
     values.push_back(signal_at(model, k * signal.step).value);
   return values;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "support/bad_input.h"
+#include "support/sanitized.h"
 
 using namespace railstep;
 using Catch::Contains;
@@ -176,7 +177,7 @@ TEST_CASE("an option that has no effect without another is refused", "[bad_input
   bad.refused(hil + "--grace 0.2", {"--grace 0.2", "--duration, 0.1", "E-HIL-02"});
 }
 
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // these take all addresses
+#if !defined(RAILSTEP_SANITIZED)  // these take all addresses
 TEST_CASE("work that does not fit into memory is refused in one sentence", "[bad_input][cli]") {
   const BadInput bad("memory");
   const auto refused = [&bad](const std::string& words, const std::string& said) {
