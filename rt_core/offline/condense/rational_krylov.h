@@ -13,7 +13,7 @@ namespace railstep {
 /// Away from statics this is a measure and not a bound; a motion far softer than those at the
 /// expansion points holds little strain energy.
 /// @param hz    expansion points, above 0
-/// @param most  columns of the result, fewer where there are no more
+/// @param most  columns of the result; it has fewer where fewer are independent
 /// Throws Refused if the line resonates without damping at an expansion point.
 Eigen::MatrixXd rational_krylov_shapes(const Track& track, const Line& line,
                                        const std::vector<double>& hz, int most);
