@@ -276,7 +276,7 @@ void read_seats(const Table& root, Scene& scene, Intact& intact) {
   intact.seats = root.attempt({"sleeper", "ballast", "under_sleeper_pad"}, [&] {
     scene.sleeper = read_sleeper(root, scene);
   }) || root.is_tainted();
-  root.apart(
+  root.attempt_alone(
       {"support_change"}, [&] { scene.seat_changes = read_seat_changes(root, scene); },
       intact.seats);
   if (scene.track.endless && scene.support && scene.support->length > 0.)
@@ -331,8 +331,8 @@ void read_traffic(const Table& root, Scene& scene, Intact& intact) {
     root.attempt(
         {}, [&] { check_contact(root, scene); }, intact.condensed);
   }
-  root.apart({"stop"}, [&] { scene.stops = read_stops(root, scene); });
-  root.apart({"load"}, [&] { scene.loads = read_loads(root, scene); });
+  root.attempt_alone({"stop"}, [&] { scene.stops = read_stops(root, scene); });
+  root.attempt_alone({"load"}, [&] { scene.loads = read_loads(root, scene); });
   const bool wheelsets = root.attempt(
       {"wheelset"}, [&] { scene.wheelsets = read_wheelsets(root, scene, scene.inputs); },
       intact.sections);
@@ -343,10 +343,10 @@ void read_traffic(const Table& root, Scene& scene, Intact& intact) {
   const bool external = root.attempt(
       {"external_wheel"}, [&] { scene.external_wheels = read_external_wheels(root, scene); });
   intact.traffic = (wheelsets && vehicles && external) || root.is_tainted();
-  root.apart(
+  root.attempt_alone(
       {"irregularity"}, [&] { scene.irregularity = read_irregularity(root, scene); },
       intact.traffic);
-  root.apart(
+  root.attempt_alone(
       {"defect"}, [&] { scene.defects = read_defects(root, scene); }, intact.traffic);
   const std::optional<Table> output = root.table_if("output");
   scene.trace_supports = output && output->boolean("supports", false);
@@ -355,7 +355,7 @@ void read_traffic(const Table& root, Scene& scene, Intact& intact) {
 Scene read_track_scene(const Table& root) {
   Scene scene;
   // No other table is needed to read the step, so that its errors stand beside all others.
-  const bool is_stepped = root.apart({"step"}, [&] {
+  const bool is_stepped = root.attempt_alone({"step"}, [&] {
     if (const std::optional<Table> step = root.table_if("step"))
       scene.step = read_track_step(*step);
   });
@@ -363,7 +363,7 @@ Scene read_track_scene(const Table& root) {
   Intact intact = read_rails(root, scene);
   scene.statics = read_statics(root);
   read_traffic(root, scene, intact);
-  root.apart(
+  root.attempt_alone(
       {"sensor"}, [&] { scene.sensors = read_sensors(root, scene); },
       intact.seats && intact.traffic);
   root.attempt({}, [&] { check_output(root, scene); });

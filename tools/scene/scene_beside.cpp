@@ -61,7 +61,8 @@ Scene read_track_beside(const Table& root, const SystemScene& scene, NameBook& n
                   "expected a scene of a track and bodies without it");
     });
   Scene track;
-  const bool is_stepped = root.apart({"step"}, [&] { track.step = read_step(root.table("step")); });
+  const bool is_stepped =
+      root.attempt_alone({"step"}, [&] { track.step = read_step(root.table("step")); });
   if (!is_stepped) track.step.reset();
   intact = read_rails(root, track);
   check_model(root.table("track"), track.track);

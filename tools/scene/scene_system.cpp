@@ -112,7 +112,7 @@ SystemScene read_system_scene(const Table& root) {
     if (scene.track->step) scene.step = *scene.track->step;
     scene.inputs = scene.track->inputs;  // read_forces() counts on from these
   } else {
-    root.apart({"step"}, [&] { scene.step = read_system_step(root.table("step")); });
+    root.attempt_alone({"step"}, [&] { scene.step = read_system_step(root.table("step")); });
   }
   if (!known) root.end_part();  // [system] says whether all lies in a plane
   const bool bodies = read_bodies(root, scene, names), beams = read_beams(root, scene, names);

@@ -114,7 +114,7 @@ class Table {
   /// error: a bad value in it does not drop the refusals behind it.
   /// @returns whether it was read and met no error
   template <typename Part>
-  bool apart(Names tables, Part part, bool known = true) const {
+  bool attempt_alone(Names tables, Part part, bool known = true) const {
     const bool tainted = is_tainted();
     const std::size_t before = bad_values();
     const bool is_whole = attempt(tables, part, known);

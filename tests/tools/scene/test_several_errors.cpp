@@ -138,7 +138,7 @@ namespace {
 
 /// Reads [step] up to frame_s where it is above dt_s, then [rail].
 int read_step_and_rail(const Table& root) {
-  root.apart({"step"}, [&] {
+  root.attempt_alone({"step"}, [&] {
     const Table step = root.table("step");
     if (step.number("dt_s", above(0)) > step.number("frame_s", above(0)))
       step.refuse("frame_s", "E-KEY-10", "shorter than dt_s");
