@@ -1,6 +1,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <string_view>
 
@@ -86,6 +87,7 @@ std::vector<int> read_seats(const Table& t, const Scene& scene) {
             other, "E-SUPPORT-04",
             fmt::format("{} is given beside seats; expected seats alone, or from and to", other));
     for (const double seat : t.numbers("seats", between(0.0, static_cast<double>(last)))) {
+      if (std::isnan(seat)) continue;  // it has been refused
       const int number = static_cast<int>(seat);
       if (number != seat)
         t.refuse(

@@ -169,7 +169,8 @@ TEST_CASE("wheel loads on a track that gives way are those at which a run starts
 
 TEST_CASE("the motor car has the weights and the vertical modes of its source", "[critical]") {
   const std::string car = kScene + " --set 'vehicle[0].file=\"../vehicles/gz18.toml\"'";
-  for (const auto& wheel : answer("static " + car).at("wheels"))
+  const auto loads = answer("static " + car);
+  for (const auto& wheel : loads.at("wheels"))
     CHECK(wheel.at("q_n").get<double>() ==
           Approx(9.81 * (30551. + 2. * 8900. + 4. * 1834. + 8.) / 8.).epsilon(1e-4));
   // Car and frames that bounce on held wheelsets. The arms of the boxes also push the wheelsets
