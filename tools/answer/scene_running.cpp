@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "offline/energy/runner_energy.h"
 #include "offline/start/standing_track.h"
 #include "run/simulation.h"
 #include "text/read.h"
@@ -19,36 +20,53 @@ void check(const Scene& scene) {
                                  scene.file.string()));
 }
 
-/// The rails under each vehicle of a scene, even ones.
-std::vector<RunningOn> rails_of(Scene scene) {
+/// The rails under each vehicle of a scene, even ones, and the design line where it starts.
+/// @param shape  to which the lines point
+std::vector<RunningOn> rails_of(Scene scene, const LineShape& shape) {
   std::vector<RunningOn> rails(scene.rail_vehicles.size());
-  if (scene.track.rigid) return rails;
+  const auto set_lines = [&] {
+    for (std::size_t i = 0; i < rails.size() && shape.is_there(); ++i) {
+      const RailVehicleScene& v = scene.rail_vehicles[i];
+      rails[i].line = design_line(shape, reach_of(v.runner));
+      rails[i].gravity = v.gravity;
+      rails[i].place = v.start + v.runner.bodies.front().centre[0];
+    }
+  };
+  if (scene.track.rigid) {
+    set_lines();
+    return rails;
+  }
   scene.irregularity.reset();
   const Built built(scene);
   for (std::size_t i = 0; i < rails.size(); ++i)
     rails[i] = rails_at_rest(*built.packed, built.track, static_cast<std::int32_t>(i));
+  set_lines();
   return rails;
 }
 
+/// @param creep_power  of both wheels, W
 void add_wheelset(const std::string& name, const double* left, const double* right,
-                  const double* motion, RunningLoads& loads) {
+                  const double* motion, double creep_power, double speed, RunningLoads& loads) {
   loads.wheels.push_back({name + "_left", left[2], -left[1], left[0]});
   loads.wheels.push_back({name + "_right", right[2], right[1], right[0]});
   loads.wheelsets.push_back({name, motion[index_of(BodyMotion::y)],
                              motion[index_of(BodyMotion::yaw)], -left[1] - right[1],
-                             -(left[0] + right[0])});
+                             speed == 0. ? -(left[0] + right[0]) : -creep_power / speed});
 }
 
-void add_loads_on_rigid(const RailVehicleScene& v, RunningLoads& loads) {
-  const SteadyRunning steady = steady_running(v.runner, loaded_matrices(v), v.contact, v.speed);
-  const auto forces = wheel_forces(v.runner, v.contact, v.speed, steady);
+void add_loads_on_rigid(const RailVehicleScene& v, const RunningOn& on, RunningLoads& loads) {
+  const Running here = running_on(on, v.runner, loaded_matrices(v), v.contact, v.speed);
+  const SteadyRunning steady =
+      steady_running(v.runner, here.matrices, v.contact, v.speed, here.rails);
+  const auto forces = wheel_forces(v.runner, v.contact, v.speed, steady, here.rails);
   std::size_t set = 0;
   for (std::size_t b = 0; b < v.runner.bodies.size(); ++b) {
     if (!v.runner.bodies[b].is_wheelset()) continue;
     const std::string& name = v.wheelsets[set];
     const auto& [left, right] = forces[set++];
     add_wheelset(name, left.generalised, right.generalised,
-                 steady.displacement.data() + kMotions * static_cast<Eigen::Index>(b), loads);
+                 steady.displacement.data() + kMotions * static_cast<Eigen::Index>(b),
+                 left.creep_power + right.creep_power, v.speed, loads);
   }
 }
 
@@ -58,12 +76,15 @@ void add_loads_on_track(const Scene& scene, RunningLoads& loads) {
   const Model& model = run.model();
   for (std::int32_t r = 0; r < model.runners; ++r) {
     const RunnerModel& own = model.runner[r];
+    const StandingRunner standing = standing_runner(model, own, run.state);
     for (int i = 0; i < own.wheelsets; ++i) {
+      const auto& [left, right] = standing.wheels[static_cast<std::size_t>(i)];
       const std::int32_t set = own.first_wheelset + i;
       add_wheelset(
           scene.rail_vehicles[static_cast<std::size_t>(r)].wheelsets[static_cast<std::size_t>(i)],
           wheel_force_of(run.state, set, 0), wheel_force_of(run.state, set, 1),
-          run.state.u + own.first + own.wheelset[i].first, loads);
+          run.state.u + own.first + own.wheelset[i].first,
+          left.force.creep_power + right.force.creep_power, standing.speed, loads);
     }
   }
 }
@@ -72,14 +93,16 @@ void add_loads_on_track(const Scene& scene, RunningLoads& loads) {
 
 std::vector<RunningMode> modes_at_speed(const Scene& scene, double speed) {
   check(scene);
-  const std::vector<RunningOn> rails = rails_of(scene);
+  const std::vector<RunningOn> rails = rails_of(scene, scene.design_line);
   std::vector<RunningMode> all;
   for (std::size_t i = 0; i < rails.size(); ++i) {
     const RailVehicleScene& v = scene.rail_vehicles[i];
     const RunnerMatrices m = loaded_matrices(v);
-    const SteadyRunning steady = steady_running(v.runner, m, v.contact, speed, rails[i].rails);
-    const std::vector<RunningMode> own =
-        running_modes(linear_running(v.runner, m, v.contact, speed, steady, rails[i]));
+    const Running here = running_on(rails[i], v.runner, m, v.contact, speed);
+    const SteadyRunning steady =
+        steady_running(v.runner, here.matrices, v.contact, speed, here.rails);
+    const std::vector<RunningMode> own = running_modes(linear_running(
+        v.runner, here.matrices, v.contact, speed, steady, {here.rails, rails[i].track}));
     all.insert(all.end(), own.begin(), own.end());
   }
   std::sort(all.begin(), all.end(),
@@ -89,7 +112,7 @@ std::vector<RunningMode> modes_at_speed(const Scene& scene, double speed) {
 
 std::optional<CriticalRunning> critical_speed_between(const Scene& scene, double from, double to) {
   check(scene);
-  const std::vector<RunningOn> rails = rails_of(scene);
+  const std::vector<RunningOn> rails = rails_of(scene, scene.design_line);
   std::optional<CriticalRunning> least;
   for (std::size_t i = 0; i < rails.size(); ++i) {
     const RailVehicleScene& v = scene.rail_vehicles[i];
@@ -107,7 +130,9 @@ RunningLoads running_loads(const Scene& scene) {
     add_loads_on_track(scene, loads);
     return loads;
   }
-  for (const RailVehicleScene& v : scene.rail_vehicles) add_loads_on_rigid(v, loads);
+  const std::vector<RunningOn> rails = rails_of(scene, scene.design_line);
+  for (std::size_t i = 0; i < rails.size(); ++i)
+    add_loads_on_rigid(scene.rail_vehicles[i], rails[i], loads);
   return loads;
 }
 

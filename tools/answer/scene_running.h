@@ -26,7 +26,7 @@ struct WheelLoad {
 struct WheelsetLoad {
   std::string name;
   double y, yaw, sum_y;  // m, rad, N
-  double resistance;     // along the track, against the motion, N
+  double resistance;     // to the vehicle's motion: what its creep dissipates by a metre of way, N
 };
 struct RunningLoads {
   std::vector<WheelLoad> wheels;

@@ -233,7 +233,8 @@ TracedTraffic traffic_of(const Scene& scene, const Track& track) {
            .irregularities = irregularities_of(scene),
            .input_limits = limits_of(scene.inputs),
            .external_wheels = {scene.external_wheels.begin(), scene.external_wheels.end()},
-           .right_head = railhead_of(scene, sections, kRightRail)},
+           .right_head = railhead_of(scene, sections, kRightRail),
+           .design_line = scene.design_line},
           names_of(scene, std::move(sensors.columns))};
 }
 

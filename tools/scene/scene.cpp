@@ -344,6 +344,8 @@ void read_traffic(const Table& root, Scene& scene, Intact& intact) {
       {"external_wheel"}, [&] { scene.external_wheels = read_external_wheels(root, scene); });
   intact.traffic = (wheelsets && vehicles && external) || root.is_tainted();
   root.attempt_alone(
+      {"line"}, [&] { scene.design_line = read_design_line(root, scene); }, intact.traffic);
+  root.attempt_alone(
       {"irregularity"}, [&] { scene.irregularity = read_irregularity(root, scene); },
       intact.traffic);
   root.attempt_alone(

@@ -253,6 +253,7 @@ struct Scene {
   std::vector<ExternalWheelScene> external_wheels;
   std::vector<VehicleScene> vehicles;
   std::vector<RailVehicleScene> rail_vehicles;
+  LineShape design_line;  // [line]; straight and level without it
   std::optional<IrregularityScene> irregularity;
   std::vector<DefectScene> defects;
   std::optional<StepScene> step;  // nullopt: the scene is not run

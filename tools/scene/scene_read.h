@@ -15,13 +15,37 @@ namespace railstep {
 /// Parses a scene and checks its schema. Throws InputError.
 Table open_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides);
 /// All keys that a scene may have at its root, of either kind of scene.
-inline const Table::Names kSceneKeys = {
-    "schema",         "track",        "rail",     "rail_joint", "support",
-    "sleeper",        "ballast",      "stop",     "load",       "under_sleeper_pad",
-    "support_change", "wheelset",     "vehicle",  "contact",    "coupler",
-    "external_wheel", "irregularity", "defect",   "sensor",     "output",
-    "step",           "static",       "condense", "system",     "body",
-    "beam",           "joint",        "joints",   "spring",     "force"};
+inline const Table::Names kSceneKeys = {"schema",
+                                        "track",
+                                        "rail",
+                                        "rail_joint",
+                                        "support",
+                                        "sleeper",
+                                        "ballast",
+                                        "stop",
+                                        "load",
+                                        "under_sleeper_pad",
+                                        "support_change",
+                                        "wheelset",
+                                        "vehicle",
+                                        "contact",
+                                        "coupler",
+                                        "external_wheel",
+                                        "irregularity",
+                                        "defect",
+                                        "sensor",
+                                        "output",
+                                        "step",
+                                        "static",
+                                        "condense",
+                                        "system",
+                                        "body",
+                                        "beam",
+                                        "joint",
+                                        "joints",
+                                        "spring",
+                                        "force",
+                                        "line"};
 Scene read_track_scene(const Table& root);
 /// The parts of a track's scene that were read without a refusal. A check that builds on another
 /// part is kept back.
@@ -80,6 +104,8 @@ std::vector<LoadScene> read_loads(const Table& root, const Scene& scene);
 /// @param inputs  the inputs of their forces are added to it
 std::vector<WheelsetScene> read_wheelsets(const Table& root, const Scene& scene,
                                           std::vector<InputScene>& inputs);
+/// [line], which only vehicles in space follow. All that runs must be read.
+LineShape read_design_line(const Table& root, const Scene& scene);
 std::optional<IrregularityScene> read_irregularity(const Table& root, const Scene& scene);
 std::vector<DefectScene> read_defects(const Table& root, const Scene& scene);
 /// [[wheelset.tread]] of a wheelset whose radius and speed are read.

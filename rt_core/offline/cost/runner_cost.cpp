@@ -75,6 +75,37 @@ Cost brakes_cost(const RunnerModel& runner) {
   return sum;
 }
 
+// On a design line: what a frame's place says, and of a pose beside each piece of the tables.
+constexpr Cost kRotation = branching(350, 150), kPose = branching(900, 350),
+               kLinePiece = branching(240, 80);
+
+/// All tables of a design line at one place.
+Cost line_tables_cost(const DesignLine& line) {
+  return table_cost(line.curvature.rows) + table_cost(line.cant.rows) +
+         table_cost(line.gradient.rows);
+}
+/// The poses of all pairs of a runner's frames, and of its stops and rods.
+Cost poses_cost(const Model& model, const RunnerModel& runner) {
+  const DesignLine& line = model.design_line;
+  const std::int64_t poses = kMotions * std::int64_t{runner.frames.pairs};
+  return runner.frames.pairs *
+             (kPose + 3 * line_tables_cost(line) + 2 * std::int64_t{line.pieces} * kLinePiece) +
+         (runner.stops + runner.rods) * work(2 * poses + 2, 2 * poses);
+}
+/// What the design line does to a runner in a stage.
+Cost design_line_cost(const Model& model, const RunnerModel& runner) {
+  if (!is_there(model.design_line)) return {};
+  const std::int64_t poses = kMotions * std::int64_t{runner.frames.pairs}, n = runner.size,
+                     rods = runner.rods > 0 ? n + constraint_count(runner) : 0;
+  const Cost rotation = kRotation + line_tables_cost(model.design_line);
+  const std::int64_t places = (runner.stops > 0 ? 1 : 0) + (runner.rods > 0 ? 1 : 0);
+  return (4 * std::int64_t{runner.bodies} + 2 * std::int64_t{runner.wheelsets}) * rotation +
+         runner.bodies * branching(250, 150) + (2 + places) * poses_cost(model, runner) +
+         runner.frames.pairs * branching(2 * 144 + 700, 144 + 300) +
+         runner.frames.elements * branching(450, 200) +
+         work((2 * n + 2 * rods) * poses + 2 * poses, (n + rods) * poses) + work(8 * n, 6 * n);
+}
+
 }  // namespace
 
 Cost runners_cost(const Model& model) {
@@ -95,7 +126,8 @@ Cost runners_cost(const Model& model) {
           work(held * (2 * n + 2 * motions + (2 * n + 2) * own.stops),
                held * (2 * n + motions + 2 * n * own.stops)) +
           solved + 3 * table_cost(own.travel.rows) + forces_cost(own.force, own.forces) +
-          own.wheelsets * (branching(40, 40) + model.signals * kSignal + grip) + brakes_cost(own);
+          own.wheelsets * (branching(40, 40) + model.signals * kSignal + grip) + brakes_cost(own) +
+          design_line_cost(model, own);
   }
   return sum;
 }
@@ -125,7 +157,8 @@ Cost publish_runners_cost(const Model& model) {
     const std::int64_t rows = own.rods + own.stops;
     sum = sum + rows * (work(2 * n, 2 * n) + branching(10, 5)) +
           own.wheelsets * table_cost(own.travel.rows) + own.wheelsets * branching(40, 40) +
-          brakes_cost(own);
+          brakes_cost(own) +
+          (rows > 0 && is_there(model.design_line) ? poses_cost(model, own) : Cost{});
   }
   return sum;
 }

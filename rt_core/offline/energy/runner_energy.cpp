@@ -11,8 +11,24 @@
 namespace railstep {
 namespace {
 
-AlongTrack along_track(const RunnerModel& runner, const State& at) {
-  return {at.steps, 0., ahead_of(runner, at.u + runner.first)};
+/// Power of a wheel's force on what the turning of its frame adds to its motion, W.
+double power_on_frame(const RailsUnder& under, double radius, const double* u,
+                      const double* force) {
+  double rate[kMotions] = {}, power = 0.;
+  add_frame_rates(under, radius, u, rate);
+  for (int k = 0; k < kMotions; ++k) power += force[k] * rate[k];
+  return power;
+}
+
+/// Displacements and forces of the stops in a state.
+std::vector<StandingStop> standing_stops(const Model& model, const RunnerModel& runner,
+                                         const State& at) {
+  std::vector<double> pose(kMostPoses);
+  const double* const poses = poses_of(model, runner, along_in(runner, at), pose.data());
+  std::vector<StandingStop> all;
+  for (std::int32_t j = 0; j < runner.stops; ++j)
+    all.push_back(standing_stop(model, runner, j, at, poses));
+  return all;
 }
 
 double along(const Model& model, const WheelSeatRow& seat, const Configuration& at) {
@@ -28,7 +44,7 @@ void stand_on_seat(const Model& model, const RunnerModel& runner, int wheelset, 
   SeatMotions seats;
   RailForce place[kWheelSeatRows];
   locate_wheel_seat(model, now, runner,
-                    element_place(model, runner, wheelset, along_track(runner, at)), side, seats,
+                    element_place(model, runner, wheelset, along_in(runner, at)), side, seats,
                     wheel.seat, place);
   std::fill_n(wheel.residual, kWheelSeatRows, 0.);
   std::fill_n(wheel.moved, kWheelSeatRows, 0.);
@@ -51,7 +67,7 @@ std::vector<RailForce> wheel_forces_on_rails(const Model& model, const State& at
     for (int i = 0; i < runner.wheelsets; ++i)
       for (int side = 0; side < 2; ++side)
         forces.push_back(rail_force(model, runner.load_point[side],
-                                    element_place(model, runner, i, along_track(runner, at)),
+                                    element_place(model, runner, i, along_in(runner, at)),
                                     -wheel_force_of(at, runner.first_wheelset + i, side)[2]));
   }
   return forces;
@@ -70,16 +86,89 @@ Eigen::VectorXd forces_of(const RunnerModel& runner, const StandingRunner& stand
 /// Forces of the stops over all coordinates.
 Eigen::VectorXd stop_forces(const Model& model, const RunnerModel& runner, const State& at) {
   Eigen::VectorXd force = Eigen::VectorXd::Zero(runner.size);
-  for (std::int32_t j = 0; j < runner.stops; ++j)
-    force += standing_stop(model, runner, j, at).force.force *
-             BodiesVector(runner.stop_row + std::ptrdiff_t{runner.size} * j, runner.size);
+  const std::vector<StandingStop> stops = standing_stops(model, runner, at);
+  for (std::size_t j = 0; j < stops.size(); ++j)
+    force +=
+        stops[j].force.force *
+        BodiesVector(runner.stop_row + static_cast<std::ptrdiff_t>(j) * runner.size, runner.size);
   return force;
+}
+
+/// A runner at an instant: where it is, and its motions and rates.
+struct RunnerAt {
+  AlongTrack where;
+  Eigen::VectorXd u, v;
+};
+RunnerAt in_state(const RunnerModel& runner, const State& at) {
+  return {along_in(runner, at), part_of(runner, at.u), part_of(runner, at.v)};
+}
+/// In the middle of a step.
+RunnerAt halfway(const Model& model, const RunnerModel& runner, const State& from,
+                 const State& to) {
+  RunnerAt a = in_state(runner, from), b = in_state(runner, to);
+  const auto mean = [](const Eigen::VectorXd& x, const Eigen::VectorXd& y) -> Eigen::VectorXd {
+    return .5 * (x + y);
+  };
+  return {{to.steps, .5 * model.scheme.dt, .5 * (a.where.ahead + b.where.ahead),
+           .5 * (a.where.speed + b.where.speed)},
+          mean(a.u, b.u),
+          mean(a.v, b.v)};
+}
+
+/// Forces of a design line over all coordinates.
+/// @param gained  acceleration of a free runner over its frame, m/s2
+Eigen::VectorXd line_forces(const Model& model, const RunnerModel& runner, const RunnerAt& at,
+                            double gained) {
+  Eigen::VectorXd force = Eigen::VectorXd::Zero(runner.size);
+  if (!is_there(model.design_line)) return force;
+  OnLine on = on_line(model, runner, at.where);
+  on.faster += gained;
+  add_line_forces(model, runner, on, model.scheme.dt, at.u.data(), at.v.data(), force.data());
+  return force;
+}
+
+/// Work of the frames on a runner in a step: by the forces of the design line, and by what moves
+/// stops and rods in place of the bodies, J.
+double frames_work(const Model& model, const RunnerModel& runner, const State& from,
+                   const State& to, const Eigen::VectorXd& du) {
+  if (!is_there(model.design_line)) return 0.;
+  const double dt = model.scheme.dt;
+  const double gained =
+      (ahead_of(runner, to.v + runner.first) - ahead_of(runner, from.v + runner.first)) / dt;
+  const RunnerAt before = in_state(runner, from), after = in_state(runner, to);
+  const Eigen::VectorXd force =
+      model.form == Form::condensed
+          ? line_forces(model, runner, halfway(model, runner, from, to), gained)
+          : Eigen::VectorXd(.5 * (line_forces(model, runner, before, gained) +
+                                  line_forces(model, runner, after, gained)));
+  double sum = force.dot(du);
+  const double way =
+      on_line(model, runner, after.where).place - on_line(model, runner, before.where).place;
+  for (std::int32_t i = 0; i < runner.wheelsets && runner.rolls_freely == 0; ++i)
+    sum += force[runner.wheelset[i].first + index_of(BodyMotion::pitch)] *
+           (way / runner.wheelset[i].radius);
+  std::vector<double> pose(2 * std::size_t{kMostPoses});
+  const double *const first = poses_of(model, runner, before.where, pose.data()),
+                      *const last = poses_of(model, runner, after.where, pose.data() + kMostPoses);
+  const std::vector<StandingStop> stops = standing_stops(model, runner, from),
+                                  later = standing_stops(model, runner, to);
+  for (std::int32_t j = 0; j < runner.stops; ++j) {
+    const auto i = static_cast<std::size_t>(j);
+    sum -= .5 * (stops[i].force.force + later[i].force.force) *
+           (by_poses(runner, runner.frames.stops, j, last) -
+            by_poses(runner, runner.frames.stops, j, first));
+  }
+  for (std::int32_t j = 0; j < runner.rods; ++j)
+    sum += .5 *
+           (reactions_of(model, from, runner)[1 + j] + reactions_of(model, to, runner)[1 + j]) *
+           (by_poses(runner, runner.frames.rods, j, last) -
+            by_poses(runner, runner.frames.rods, j, first));
+  return sum;
 }
 
 double stop_energy(const Model& model, const RunnerModel& runner, const State& at) {
   double sum = 0.;
-  for (std::int32_t j = 0; j < runner.stops; ++j)
-    sum += standing_stop(model, runner, j, at).force.energy;
+  for (const StandingStop& stop : standing_stops(model, runner, at)) sum += stop.force.energy;
   return sum;
 }
 
@@ -91,9 +180,10 @@ struct StopWork {
 StopWork stop_work(const Model& model, const RunnerModel& runner, const State& from,
                    const State& to) {
   StopWork sum;
-  for (std::int32_t j = 0; j < runner.stops; ++j) {
-    const StandingStop a = standing_stop(model, runner, j, from),
-                       b = standing_stop(model, runner, j, to);
+  const std::vector<StandingStop> before = standing_stops(model, runner, from),
+                                  after = standing_stops(model, runner, to);
+  for (std::size_t j = 0; j < before.size(); ++j) {
+    const StandingStop &a = before[j], &b = after[j];
     const double taken =
         .5 * (a.force.force + b.force.force) * (b.z - a.z) + (b.force.energy - a.force.energy);
     if (is_brake(runner.stop[j]))
@@ -165,6 +255,7 @@ ContactWork contact_work(const Model& model, const RunnerModel& r, const Standin
       const double *f = a.force.generalised, *g = b.force.generalised;
       sum.on_bodies += .5 * dt * (f[spin] * v0 + g[spin] * v1) / r.wheelset[i].radius;
       sum.drive -= .5 * dt * (f[0] * v0 + g[0] * v1);
+      sum.drive -= .5 * dt * (a.frame_power + b.frame_power);
       sum.drive += .5 * (f[1] + g[1]) * (b.uneven_y - a.uneven_y) +
                    .5 * (f[2] + g[2]) * (b.uneven_z - a.uneven_z);
       sum.creep -= .5 * dt * (a.force.creep_power + b.force.creep_power);
@@ -227,7 +318,7 @@ StandingRunner standing_runner(const Model& model, const RunnerModel& runner, co
   const Configuration moving{at.v, {rates.real.data(), rates.imaginary.data()}};
   for (int i = 0; i < runner.wheelsets; ++i) {
     RailsUnder slope;
-    const RailsUnder uneven = rails_under(model, runner, i, along_track(runner, at), &slope);
+    const RailsUnder uneven = rails_under(model, runner, i, along_in(runner, at), &slope);
     const std::int32_t first = runner.first + runner.wheelset[i].first;
     auto& wheels = standing.wheels.emplace_back();
     for (int side = 0; side < 2; ++side) {
@@ -253,8 +344,11 @@ StandingRunner standing_runner(const Model& model, const RunnerModel& runner, co
       Rolling rolling = rolling_of(runner, i, standing.speed, at.v + first,
                                    creepage_of(at, runner.first_wheelset + i, side), 0.);
       rolling.grip = under.grip[side];
-      wheel.force =
-          force_on_wheel(runner.contact, radius, sign, rolling, place, at.v + first, rate);
+      double material[kMotions];
+      std::copy_n(at.v + first, kMotions, material);
+      add_frame_rates(under, radius, at.u + first, material);
+      wheel.force = force_on_wheel(runner.contact, radius, sign, rolling, place, material, rate);
+      wheel.frame_power = power_on_frame(under, radius, at.u + first, wheel.force.generalised);
       wheel.strain = strain_of(runner.contact, radius, sign, place, wheel.force);
     }
   }
@@ -294,6 +388,7 @@ RunnerWork runner_work(const Model& model, const RunnerModel& runner, const Stan
   work.creep += stops.friction;
   work.drive -= contact.on_seats - contact.on_lines - residual;
   add_spin_work(model, runner, before, from, after, to, work);
+  work.drive += frames_work(model, runner, from, to, du);
   // The frames accelerate.
   const double faster = (after.speed - before.speed) / dt;
   for (std::int32_t b = 0; b < runner.bodies; ++b)
@@ -303,7 +398,8 @@ RunnerWork runner_work(const Model& model, const RunnerModel& runner, const Stan
 
 double runner_unbalanced(const Model& model, const RunnerModel& runner,
                          const StandingRunner& standing, const State& at, const State& after) {
-  const Eigen::VectorXd force = forces_of(runner, standing) + stop_forces(model, runner, at);
+  const Eigen::VectorXd force = forces_of(runner, standing) + stop_forces(model, runner, at) +
+                                line_forces(model, runner, in_state(runner, at), 0.);
   return suspended_unbalanced(model, runner, force, at, after);
 }
 

@@ -16,6 +16,7 @@ struct StandingWheel {
   double moved[kWheelSeatRows];       // of the seat, with its residual displacement, m, m, rad
   double residual[kWheelSeatRows];    // residual displacements alone
   double uneven_y, uneven_z;          // of the unloaded rail, m
+  double frame_power;                 // on what the turning of its frame adds to its motion, W
   /// Force on the seat along row k, N, N m.
   double on_seat(int k) const { return k == 2 ? force.on_section : -force.generalised[1 + k]; }
 };

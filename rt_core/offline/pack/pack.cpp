@@ -210,6 +210,7 @@ PackedModel::PackedModel(const Track& track, const Traffic& traffic, const PackO
   for (const RailIrregularity& own : traffic.irregularities) add_irregularity(track, own);
   for (const Wheelset& wheelset : traffic.wheelsets) add_wheelset(track, wheelset, heads);
   for (const RunningVehicle& vehicle : traffic.vehicles) add_vehicle(track, vehicle, heads);
+  add_design_line(traffic);
   for (const RailVehicle& vehicle : traffic.rail_vehicles) add_runner(track, vehicle);
   if (track_row_count(model_) > 0) add_responses();
   add_fixed_ports(track);

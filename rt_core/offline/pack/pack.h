@@ -167,6 +167,7 @@ struct Traffic {
   std::vector<ExternalWheel> external_wheels = {};    // their inputs follow all others
   std::vector<int> held = {};                         // rails that a multibody system is joined to
   std::optional<Railhead> right_head = std::nullopt;  // of the right rail if it differs
+  LineShape design_line = {};                         // which vehicles in space follow
 };
 
 /// A track without end under traffic of one speed, at least 0. It is a ring if its lines are
@@ -228,6 +229,7 @@ struct SuspendedMatrices {
 struct SuspendedResponse {
   Eigen::MatrixXd inverse;   // [n][n] of the coordinates, symmetric to the last bit
   Eigen::MatrixXd reaction;  // [constraints][n] of the constraints' forces along their rows
+  Eigen::MatrixXd held;      // [constraints][constraints] their forces by displacements of the rows
 };
 
 /// Column by column.
@@ -289,6 +291,10 @@ class PackedModel {
   void add_vehicle(const Track& track, const RunningVehicle& vehicle,
                    const std::array<Railhead, 2>& heads);
   void add_runner(const Track& track, const RailVehicle& vehicle);
+  void add_design_line(const Traffic& traffic);
+  /// @param first_rod  row of the first rod among the constraints
+  void add_frames(const RailVehicle& vehicle, const RunnerMatrices& m,
+                  const SuspendedResponse& step, RunnerModel& packed);
   /// Friction that falls over slip is a damper of negative rate. A step has one solution as long as
   /// the slip of contacts by a unit force, times the fall of the force by a unit of slip, is below
   /// 1. Above 1/2, under twice the mean wheel load, the friction is refused.
@@ -322,6 +328,7 @@ class PackedModel {
   Elements met_{};            // elements that the traffic visits (ring), else all
   std::vector<bool> is_met_;  // each element; between parts of the traffic a ring has others
   bool moves_along_ = true;   // rows may have parts along x
+  std::vector<std::unique_ptr<std::vector<FrameElement>>> frame_elements_;
   std::vector<std::unique_ptr<std::vector<double>>> reals_;
   std::vector<std::unique_ptr<std::vector<std::int32_t>>> integers_;
 };

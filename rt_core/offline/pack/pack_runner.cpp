@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <string>
 
 #include "offline/math/refuse.h"
@@ -180,10 +181,66 @@ void PackedModel::add_runner(const Track& track, const RailVehicle& vehicle) {
   reaction.bottomRows(packed.rods) *= -1.;  // a tension acts against an elongation
   packed.reaction = keep(column_by_column(reaction.transpose()));
   packed.compliance = keep(column_by_column(compliance));
+  if (is_there(model_.design_line)) add_frames(vehicle, matrices, step, packed);
   ++model_.runners;
   for (const int rail : {0, 1})
     packed.load_point[rail] = model_.lines > 0 ? load_point_of_wheel(rail) : 0;
   runners_.push_back({vehicle, loaded_matrices(vehicle)});
+}
+
+void PackedModel::add_design_line(const Traffic& traffic) {
+  const LineShape& shape = traffic.design_line;
+  if (!shape.is_there() || traffic.rail_vehicles.empty()) return;
+  double length = 0.;
+  for (const RailVehicle& vehicle : traffic.rail_vehicles)
+    length = std::max(length, reach_of(vehicle.runner));
+  DesignLine line = design_line(shape, length);
+  if (line.pieces > kMostLinePieces)
+    refuse("E-PACK-61", "the design line has " + std::to_string(line.pieces) +
+                            " pieces between two bodies of a vehicle; expected at most " +
+                            std::to_string(kMostLinePieces) + ": rows farther from each other");
+  line.curvature.value = keep(shape.curvature);
+  line.cant.value = keep(shape.cant);
+  line.gradient.value = keep(shape.gradient);
+  model_.design_line = line;
+}
+
+void PackedModel::add_frames(const RailVehicle& vehicle, const RunnerMatrices& m,
+                             const SuspendedResponse& step, RunnerModel& packed) {
+  const FrameMatrices f = frame_matrices(vehicle.runner);
+  const Eigen::Index n = packed.size, motions = m.mass.size(), poses = f.stops.cols();
+  // Dampers in series have coordinates of their own, see extended().
+  Eigen::MatrixXd series = Eigen::MatrixXd::Zero(n, poses);
+  for (Eigen::Index i = 0; i < f.series.rows(); ++i) {
+    const RunnerMatrices::Series& own = m.series[static_cast<std::size_t>(i)];
+    series.topRows(motions) += own.stiffness * own.row * f.series.row(i);
+    series.row(motions + i) = -own.stiffness * f.series.row(i);
+  }
+  RunnerFrames& frames = packed.frames;
+  frames.centre = keep(centres_of(vehicle.runner));
+  if (f.elements.size() > std::size_t{kMaxFrameElements})
+    refuse("E-PACK-62", "a rail vehicle has " + std::to_string(f.elements.size()) +
+                            " elements between bodies; on a design line expected at most " +
+                            std::to_string(kMaxFrameElements));
+  frames.gravity = vehicle.gravity;
+  set_pairs(f.pairs, frames);
+  frame_elements_.push_back(std::make_unique<std::vector<FrameElement>>(f.elements));
+  frames.elements = static_cast<std::int32_t>(f.elements.size());
+  frames.element = frame_elements_.back()->data();
+  frames.stiffness = keep(f.stiffness);
+  frames.preload = keep(f.preload);
+  if (f.series.rows() > 0) frames.series = keep(column_by_column(series));
+  frames.stops = keep(column_by_column(f.stops.transpose()));
+  if (packed.rods == 0) return;
+  const Eigen::Index held = step.held.rows();
+  const Eigen::MatrixXd shorter = -f.rods;  // what the bodies' motions have to make up for
+  Eigen::MatrixXd forces = Eigen::MatrixXd::Zero(constraint_count(packed), poses);
+  forces.bottomRows(held) = step.held.rightCols(packed.rods) * shorter;
+  forces.bottomRows(packed.rods) = -forces.bottomRows(packed.rods).eval();
+  frames.rods = keep(column_by_column(f.rods.transpose()));
+  frames.rod_moved = keep(column_by_column(
+      Eigen::MatrixXd(-step.reaction.bottomRows(packed.rods).transpose() * shorter)));
+  frames.rod_reaction = keep(column_by_column(forces.transpose()));
 }
 
 void PackedModel::refuse_many_coordinates() const {

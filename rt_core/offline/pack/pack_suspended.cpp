@@ -24,7 +24,8 @@ SuspendedResponse step_response(const SuspendedMatrices& m, const Scheme& scheme
   A.diagonal() += scheme.kg * m.mass;
   if (m.penalty.size() > 0) A.diagonal() += m.penalty;
   const Eigen::MatrixXd free = A.partialPivLu().inverse();
-  SuspendedResponse made{.5 * (free + free.transpose()), Eigen::MatrixXd::Zero(0, A.rows())};
+  SuspendedResponse made{.5 * (free + free.transpose()), Eigen::MatrixXd::Zero(0, A.rows()),
+                         Eigen::MatrixXd::Zero(0, 0)};
   if (m.held.cols() == 0) return made;
   const Eigen::MatrixXd moved = made.inverse * m.held;
   Eigen::MatrixXd along = m.held.transpose() * moved;
@@ -36,6 +37,7 @@ SuspendedResponse step_response(const SuspendedMatrices& m, const Scheme& scheme
            "a rigid rod of a rail vehicle holds what its drive or other rods hold already; "
            "expected rods of which each takes a motion away");
   made.reaction = -(scale.asDiagonal() * lu.solve(scale.asDiagonal() * moved.transpose()));
+  made.held = scale.asDiagonal() * lu.inverse() * scale.asDiagonal();
   const Eigen::MatrixXd left = made.inverse + moved * made.reaction;
   const Eigen::MatrixXd unheld = made.inverse;
   made.inverse = .5 * (left + left.transpose());

@@ -24,6 +24,15 @@ struct Contacts {
   MatrixXd by_rate;
 };
 
+/// Rates of a wheelset's material on a design line. @param first  of its coordinates
+std::array<double, kMotions> material_rates(const RailsUnder& rails, double radius, Index first,
+                                            const VectorXd& u, const VectorXd& v) {
+  std::array<double, kMotions> rates{};
+  std::copy_n(v.data() + first, kMotions, rates.begin());
+  add_frame_rates(rails, radius, u.data() + first, rates.data());
+  return rates;
+}
+
 void add_wheelset(const RollingContact& contact, double radius, double speed,
                   const RailsUnder& rails, Index first, const VectorXd& u, const VectorXd& v,
                   Contacts& sum) {
@@ -31,9 +40,9 @@ void add_wheelset(const RollingContact& contact, double radius, double speed,
     WheelSlopes slopes;
     double over_rail[kMotions];
     place_over_rail(rails, side, u.data() + first, over_rail);
-    const WheelForce f =
-        force_on_wheel(contact, radius, side == 0 ? 1. : -1., {speed, rails.grip[side]},
-                       {over_rail, rails.roll[side]}, v.data() + first, slopes);
+    const WheelForce f = force_on_wheel(contact, radius, side == 0 ? 1. : -1.,
+                                        {speed, rails.grip[side]}, {over_rail, rails.roll[side]},
+                                        material_rates(rails, radius, first, u, v).data(), slopes);
     for (int k = 0; k < kMotions; ++k) {
       sum.force[first + k] += f.generalised[k];
       for (int j = 0; j < 4; ++j)
@@ -157,20 +166,20 @@ bool is_spin(const Runner& runner, Index k) {
 /// Newton's steps of all coordinates but the first, then of the tensions of rods.
 class StepWithRods {
  public:
-  StepWithRods(const MatrixXd& J, const MatrixXd& rods)
-      : rods_(rods), scale_(J.diagonal().cwiseAbs().maxCoeff()) {
-    const Index n = J.rows() - 1, held = rods.cols();
+  StepWithRods(const MatrixXd& J, const RunnerMatrices& m)
+      : rods_(m.rods), moved_(m.rods_moved), scale_(J.diagonal().cwiseAbs().maxCoeff()) {
+    const Index n = J.rows() - 1, held = rods_.cols();
     MatrixXd A = MatrixXd::Zero(n + held, n + held);
     A.topLeftCorner(n, n) = J.bottomRightCorner(n, n);
-    A.topRightCorner(n, held) = scale_ * rods.bottomRows(n);
-    A.bottomLeftCorner(held, n) = scale_ * rods.bottomRows(n).transpose();
+    A.topRightCorner(n, held) = scale_ * rods_.bottomRows(n);
+    A.bottomLeftCorner(held, n) = scale_ * rods_.bottomRows(n).transpose();
     solver_.compute(A);
   }
   VectorXd step(const VectorXd& left, const VectorXd& u) const {
     const Index n = left.size() - 1, held = rods_.cols();
     VectorXd b(n + held);
     b.head(n) = left.tail(n);
-    b.tail(held) = -scale_ * (rods_.transpose() * u);
+    b.tail(held) = -scale_ * (rods_.transpose() * u + moved_);
     VectorXd step = solver_.solve(b);
     step.tail(held) *= scale_;
     return step;
@@ -178,6 +187,7 @@ class StepWithRods {
 
  private:
   const MatrixXd& rods_;
+  const VectorXd& moved_;
   double scale_;
   Eigen::PartialPivLU<MatrixXd> solver_;
 };
@@ -208,7 +218,7 @@ SteadyRunning steady_running(const Runner& runner, const RunnerMatrices& m,
     for (Index k = 0; k < n; ++k)
       if (is_spin(runner, k)) J.col(k) = m.damping.col(k) - c.by_rate.col(k);
     s.resistance = -left[0];
-    const StepWithRods newton(J, m.rods);
+    const StepWithRods newton(J, m);
     const VectorXd step = newton.step(left, s.displacement);
     const double change = step.head(n - 1).cwiseAbs().maxCoeff();
     if (!std::isfinite(change)) break;
@@ -232,6 +242,26 @@ SteadyRunning steady_running(const Runner& runner, const RunnerMatrices& m,
   fail("E-VEHICLE-23",
        "no steady motion of the vehicle with all wheels on their rails was found; expected a "
        "suspension that holds each body in every direction, and rails that are not too uneven");
+}
+
+Running running_on(const RunningOn& on, const Runner& runner, const RunnerMatrices& matrices,
+                   const RollingContact& contact, double speed) {
+  if (!is_there(on.line)) return {matrices, on.rails};
+  const OnLine at{on.place, speed, 0.};
+  Running running{matrices, on.rails};
+  set_frame_rates(on.line, at, runner, running.rails);
+  // Forces depend on motions by the angles between frames, so that each pass is much closer.
+  constexpr int kPasses = 40;
+  VectorXd u = VectorXd::Zero(matrices.mass.size());
+  for (int pass = 0; pass < kPasses; ++pass) {
+    running.matrices = matrices_on(on.line, at, runner, matrices, on.gravity, u);
+    const VectorXd found =
+        steady_running(runner, running.matrices, contact, speed, running.rails).displacement;
+    const double change = (found - u).cwiseAbs().maxCoeff();
+    u = found;
+    if (change < 1e-12) break;
+  }
+  return running;
 }
 
 namespace {
@@ -301,7 +331,10 @@ void add_track(const Runner& runner, const RollingContact& contact, double speed
       WheelSlopes slopes;
       static_cast<void>(force_on_wheel(contact, runner.bodies[b].radius, side == 0 ? 1. : -1.,
                                        {speed, under.grip[side]}, {u, under.roll[side]},
-                                       steady.rate.data() + first_of(b), slopes));
+                                       material_rates(under, runner.bodies[b].radius, first_of(b),
+                                                      steady.displacement, steady.rate)
+                                           .data(),
+                                       slopes));
       add_seat(slopes, first_of(b), seat, linear);
       seat += 3;
     }
@@ -348,9 +381,12 @@ std::vector<std::array<WheelForce, 2>> wheel_forces(const Runner& runner,
       rolling.keeps = true;
       double u[kMotions];
       place_over_rail(under, side, steady.displacement.data() + first_of(b), u);
-      wheels[static_cast<std::size_t>(side)] =
-          force_on_wheel(contact, runner.bodies[b].radius, side == 0 ? 1. : -1., rolling,
-                         {u, under.roll[side]}, steady.rate.data() + first_of(b), RailRate{});
+      wheels[static_cast<std::size_t>(side)] = force_on_wheel(
+          contact, runner.bodies[b].radius, side == 0 ? 1. : -1., rolling, {u, under.roll[side]},
+          material_rates(under, runner.bodies[b].radius, first_of(b), steady.displacement,
+                         steady.rate)
+              .data(),
+          RailRate{});
     }
     all.push_back(wheels);
   }

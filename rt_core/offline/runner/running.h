@@ -3,7 +3,7 @@
 #include <optional>
 #include <vector>
 
-#include "offline/runner/suspension.h"
+#include "offline/runner/curving.h"
 #include "online/runner/rolling_contact.h"
 
 namespace railstep {
@@ -37,7 +37,19 @@ struct StandingTrack {
 struct RunningOn {
   std::vector<RailsUnder> rails = {};  // under each wheelset; empty: straight and level
   std::optional<StandingTrack> track = std::nullopt;  // empty: rigid
+  DesignLine line = {};
+  double place = 0.;    // of the first body on it, m
+  double gravity = 0.;  // m/s2
 };
+/// The matrices of a vehicle and the rails under it at a speed, with what a design line does there
+/// in steady motion.
+struct Running {
+  RunnerMatrices matrices;
+  std::vector<RailsUnder> rails;
+};
+/// Throws Failed if no steady motion is found.
+Running running_on(const RunningOn& on, const Runner& runner, const RunnerMatrices& matrices,
+                   const RollingContact& contact, double speed);
 
 /// By Newton's method with exact derivatives. The first body is held along x.
 /// @param speed  m/s

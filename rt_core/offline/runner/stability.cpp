@@ -52,8 +52,10 @@ bool counts(const std::complex<double>& s) {
 
 LinearRunning running_at(const Runner& runner, const RunnerMatrices& m,
                          const RollingContact& contact, double speed, const RunningOn& on) {
-  return linear_running(runner, m, contact, speed,
-                        steady_running(runner, m, contact, speed, on.rails), on);
+  const Running here = running_on(on, runner, m, contact, speed);
+  return linear_running(runner, here.matrices, contact, speed,
+                        steady_running(runner, here.matrices, contact, speed, here.rails),
+                        {here.rails, on.track});
 }
 
 /// The mode that grows most.

@@ -191,6 +191,7 @@ void check_balance(const Runner& runner, const VectorXd& rest, double weight) {
 void add_rod(const Runner& runner, const RunnerElement& e, RunnerMatrices& m) {
   m.rods.conservativeResize(Eigen::NoChange, m.rods.cols() + 1);
   m.rods.rightCols(1) = elongation(runner, e);
+  m.rods_moved = VectorXd::Zero(m.rods.cols());
   m.stiffness += geometric_stiffness(runner, e);
 }
 
@@ -268,7 +269,8 @@ VectorXd elongation(const Runner& runner, const RunnerElement& element) {
 VectorXd stop_forces(const RunnerMatrices& m, const VectorXd& u) {
   VectorXd sum = VectorXd::Zero(u.size());
   for (const RunnerMatrices::Stop& stop : m.stops)
-    if (!is_brake(stop.law)) sum += stop_force(stop.law, stop.row.dot(u)).force * stop.row;
+    if (!is_brake(stop.law))
+      sum += stop_force(stop.law, stop.row.dot(u) + stop.moved).force * stop.row;
   return sum;
 }
 
@@ -276,7 +278,8 @@ MatrixXd stiffness_at(const RunnerMatrices& m, const VectorXd& u) {
   MatrixXd K = m.stiffness;
   for (const RunnerMatrices::Stop& stop : m.stops)
     if (!is_brake(stop.law))
-      K -= stop_force(stop.law, stop.row.dot(u)).slope * stop.row * stop.row.transpose();
+      K -= stop_force(stop.law, stop.row.dot(u) + stop.moved).slope * stop.row *
+           stop.row.transpose();
   return K;
 }
 

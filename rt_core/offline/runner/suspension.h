@@ -14,6 +14,7 @@ struct RunnerMatrices {
   struct Series {
     Eigen::VectorXd row;        // [n]
     double stiffness, damping;  // N/m, N s/m
+    double moved = 0.;          // by the poses of frames on a design line, m
   };
   Eigen::VectorXd mass;                // [n] kg, kg m2
   Eigen::MatrixXd damping, stiffness;  // [n][n] symmetric
@@ -23,9 +24,11 @@ struct RunnerMatrices {
     Eigen::VectorXd row;  // [n]
     StopModel law;
     std::vector<double> limit;  // RunnerStop::limit
+    double moved = 0.;          // as of Series
   };
   std::vector<Stop> stops;  // at rest brakes have no moment
-  Eigen::MatrixXd rods;     // [n][rods] elongation of each, which stays 0
+  Eigen::MatrixXd rods;     // [n][rods] elongation of each; with `rods_moved` it stays 0
+  Eigen::VectorXd rods_moved = Eigen::VectorXd::Zero(rods.cols());  // as of Series
 };
 
 /// Forces of the bump stops over the coordinates at a displacement.

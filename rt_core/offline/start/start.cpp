@@ -321,7 +321,7 @@ void put_runners(const PackedModel& packed, const SettledRunners& now, const Set
     for (std::int32_t j = 0; j < model.runner[r].stops; ++j)
       if (is_brake(model.runner[r].stop[j]))
         state.anchor[model.runner[r].first_stop + j] =
-            standing_stop(model, model.runner[r], j, state).z;
+            standing_stop(model, model.runner[r], j, state, nullptr).z;
     if (model.runner[r].rolls_freely != 0) {
       start_rolling(model.runner[r], state);
       release(model.runner[r], now.steady[r].resistance, state);
@@ -330,11 +330,10 @@ void put_runners(const PackedModel& packed, const SettledRunners& now, const Set
     for (Eigen::Index i = 1; i < accelerated.size(); ++i)
       reaction[i] = now.steady[r].tension[i - 1] + accelerated[i];
     // A damper in series with a spring has no force.
-    const auto& series = packed.runners()[r].matrices.series;
-    for (std::size_t i = 0; i < series.size(); ++i) {
+    for (std::size_t i = 0; i < now.series[r].size(); ++i) {
       const std::int32_t own = first + static_cast<std::int32_t>(u.size() + static_cast<int>(i));
-      state.u[own] = series[i].row.dot(u);
-      state.v[own] = series[i].row.dot(v);
+      state.u[own] = now.series[r][i];
+      state.v[own] = (later.series[r][i] - before.series[r][i]) / span;
     }
   }
   for (std::size_t set = 0; set < now.wheels.size(); ++set)

@@ -22,6 +22,28 @@ AlongTrack place_at(const RunnerModel& runner, double time) {
   return {0, -time, runner.start_speed * time};
 }
 
+/// A runner on rails as they lie at a time from now on, and on its design line.
+Running running_here(const Model& model, const RunnerModel& runner, const PackedRunner& own,
+                     double time, std::vector<RailsUnder> rails) {
+  RunningOn on{std::move(rails), std::nullopt, model.design_line};
+  if (is_there(on.line)) {
+    on.place = on_line(model, runner, place_at(runner, time)).place;
+    on.gravity = runner.frames.gravity;
+  }
+  return running_on(on, own.vehicle.runner, own.matrices, own.vehicle.contact, first_speed(runner));
+}
+
+/// Lets a runner run steadily.
+void settle(const RunnerModel& runner, const PackedRunner& own, const Running& here,
+            SettledRunners& settled) {
+  const double speed = first_speed(runner);
+  const SteadyRunning& steady = settled.steady.emplace_back(
+      steady_running(own.vehicle.runner, here.matrices, own.vehicle.contact, speed, here.rails));
+  for (const auto& wheels :
+       wheel_forces(own.vehicle.runner, own.vehicle.contact, speed, steady, here.rails))
+    settled.wheels.push_back(wheels);
+}
+
 /// The seat under one wheel, at a time from now on.
 struct StaticSeat {
   WheelSeatRow row[kWheelSeatRows];
@@ -54,10 +76,18 @@ double rolling_yaw(const Model& model, const RunnerModel& runner, int wheelset, 
   return (middle(span) - middle(-span)) / (2. * span * speed);
 }
 
+/// Deflections of the dampers that are in series with springs, whose forces are 0.
+std::vector<double> series_of(const RunnerMatrices& m, const Eigen::VectorXd& u) {
+  std::vector<double> all;
+  for (const RunnerMatrices::Series& series : m.series)
+    all.push_back(series.row.dot(u) + series.moved);
+  return all;
+}
+
 /// Moves each wheelset to the middle of its uneven rails, and the other bodies with them.
-void follow_alignment(const PackedRunner& own, const Model& model, const RunnerModel& runner,
+void follow_alignment(const RunnerMatrices& m, const Model& model, const RunnerModel& runner,
                       double time, SteadyRunning& steady) {
-  const Eigen::Index n = own.matrices.mass.size();
+  const Eigen::Index n = m.mass.size();
   Eigen::VectorXd given = Eigen::VectorXd::Zero(n);
   std::vector<bool> is_given(static_cast<std::size_t>(n), false);
   is_given[0] = true;  // x of the first body
@@ -70,18 +100,17 @@ void follow_alignment(const PackedRunner& own, const Model& model, const RunnerM
   }
   // Bump stops may begin to press, or let go.
   constexpr int kIterations = 20;
-  const Eigen::VectorXd before = steady.displacement, held = stop_forces(own.matrices, before);
-  Eigen::VectorXd moved = given, more = Eigen::VectorXd::Zero(own.matrices.rods.cols());
-  const Eigen::Index rods = own.matrices.rods.cols();
+  const Eigen::VectorXd before = steady.displacement, held = stop_forces(m, before);
+  Eigen::VectorXd moved = given, more = Eigen::VectorXd::Zero(m.rods.cols());
+  const Eigen::Index rods = m.rods.cols();
   for (int iteration = 0; iteration < kIterations; ++iteration) {
     Eigen::MatrixXd K = Eigen::MatrixXd::Zero(n + rods, n + rods);
-    K.topLeftCorner(n, n) = stiffness_at(own.matrices, before + moved);
-    K.topRightCorner(n, rods) = own.matrices.rods;
-    K.bottomLeftCorner(rods, n) = own.matrices.rods.transpose();
+    K.topLeftCorner(n, n) = stiffness_at(m, before + moved);
+    K.topRightCorner(n, rods) = m.rods;
+    K.bottomLeftCorner(rods, n) = m.rods.transpose();
     Eigen::VectorXd force(n + rods);
-    force.head(n) = stop_forces(own.matrices, before + moved) - held -
-                    own.matrices.stiffness * moved - own.matrices.rods * more;
-    force.tail(rods) = -own.matrices.rods.transpose() * moved;
+    force.head(n) = stop_forces(m, before + moved) - held - m.stiffness * moved - m.rods * more;
+    force.tail(rods) = -m.rods.transpose() * moved;
     for (Eigen::Index k = 0; k < n; ++k) {
       if (!is_given[static_cast<std::size_t>(k)]) continue;
       K.row(k).setZero();
@@ -92,7 +121,7 @@ void follow_alignment(const PackedRunner& own, const Model& model, const RunnerM
     const Eigen::VectorXd solved = K.fullPivLu().solve(force), step = solved.head(n);
     moved += step;
     more += solved.tail(rods);
-    if (own.matrices.stops.empty() || step.cwiseAbs().maxCoeff() < 1e-14) break;
+    if (m.stops.empty() || step.cwiseAbs().maxCoeff() < 1e-14) break;
   }
   steady.displacement += moved;
   steady.tension += more;
@@ -110,12 +139,7 @@ SettledRunners runners_on_even_rails(const PackedModel& packed) {
     for (int i = 0; i < runner.wheelsets; ++i)
       std::copy_n(rails_under(model, runner, i, place_at(runner, 0.)).grip, 2,
                   rails[static_cast<std::size_t>(i)].grip);
-    const double speed = first_speed(runner);
-    settled.steady.push_back(
-        steady_running(own.vehicle.runner, own.matrices, own.vehicle.contact, speed, rails));
-    for (const auto& wheels :
-         wheel_forces(own.vehicle.runner, own.vehicle.contact, speed, settled.steady.back(), rails))
-      settled.wheels.push_back(wheels);
+    settle(runner, own, running_here(model, runner, own, 0., std::move(rails)), settled);
   }
   return settled;
 }
@@ -193,13 +217,10 @@ SettledRunners settle_runners(const PackedModel& packed, const SettledRunners& p
                                   static_cast<int>(first_port++));
       }
     }
-    const double speed = first_speed(runner);
-    settled.steady.push_back(
-        steady_running(own.vehicle.runner, own.matrices, own.vehicle.contact, speed, rails));
-    for (const auto& wheels :
-         wheel_forces(own.vehicle.runner, own.vehicle.contact, speed, settled.steady.back(), rails))
-      settled.wheels.push_back(wheels);
-    follow_alignment(own, model, runner, time, settled.steady.back());
+    const Running here = running_here(model, runner, own, time, std::move(rails));
+    settle(runner, own, here, settled);
+    follow_alignment(here.matrices, model, runner, time, settled.steady.back());
+    settled.series.push_back(series_of(here.matrices, settled.steady.back().displacement));
   }
   return settled;
 }

@@ -11,9 +11,11 @@ struct SettledRunners {
   std::vector<SteadyRunning> steady;  // of each
   /// [wheelsets of all][left, right] forces on the wheel.
   std::vector<std::array<WheelForce, 2>> wheels;
+  /// Of each, of settle_runners(): deflections of its dampers in series with springs.
+  std::vector<std::vector<double>> series = {};
 };
 
-/// Rail vehicles on straight, level, rigid rails.
+/// Rail vehicles on even, rigid rails.
 SettledRunners runners_on_even_rails(const PackedModel& packed);
 
 /// Adds the forces of the wheels to those on the lines, with everything moved on by `time`, s.

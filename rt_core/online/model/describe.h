@@ -272,7 +272,8 @@ void describe_track(Archive& a, Model& m) {
   a.count(m.runner_wheelsets, kMaxRunnerWheelsets);
   a.count(m.runner_stops, kMaxRunnerStops);
   a.count(m.runner_rods, kMaxRunnerRods);
-  for (std::int32_t i = 0; i < m.runners; ++i) describe(a, m.runner[i]);
+  describe(a, m.design_line);
+  for (std::int32_t i = 0; i < m.runners; ++i) describe(a, m.runner[i], m.design_line);
   for (std::int32_t i = 0; i < m.signals; ++i) {
     a.count(m.signal[i].rail, 1);
     a.count(m.signal[i].direction, 2);

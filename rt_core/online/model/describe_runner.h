@@ -1,12 +1,15 @@
 #pragma once
 #include <cstdint>
 
+#include "online/model/describe_system.h"
 #include "online/model/external_input.h"
 #include "online/model/state.h"
 
 namespace railstep {
 
 // Fields of what moves along a track, see describe.h.
+
+static_assert(is_flat<FrameElement>(0, 25));
 
 template <typename Archive>
 void describe(Archive& a, TravelModel& t) {
@@ -81,7 +84,21 @@ void describe(Archive& a, RollingContact& c) {
 }
 
 template <typename Archive>
-void describe(Archive& a, RunnerModel& r) {
+void describe(Archive& a, DesignLine& l) {
+  auto transition = static_cast<std::int32_t>(l.transition);
+  a.count(transition, static_cast<std::int32_t>(Transition::cosine));
+  l.transition = static_cast<Transition>(transition);
+  for (LineTable* table : {&l.curvature, &l.cant, &l.gradient}) {
+    a.count(table->rows, kMostLineRows);
+    a.reals(table->value, 2 * std::int64_t{table->rows});
+  }
+  if (!is_there(l)) return;
+  a.count(l.pieces, kMostLinePieces);
+}
+
+/// The design line must be known.
+template <typename Archive>
+void describe(Archive& a, RunnerModel& r, const DesignLine& line) {
   describe(a, r, kMaxRunnerUnknowns);
   a.count(r.rolls_freely, 1);
   a.real(r.start_speed);
@@ -111,5 +128,29 @@ void describe(Archive& a, RunnerModel& r) {
   a.count(r.rods, kMaxRodsOfRunner);
   a.reals(r.rod_row, n * r.rods);
   a.reals(r.reaction, n * constraint_count(r));
+  if (!is_there(line)) return;
+  RunnerFrames& f = r.frames;
+  a.reals(f.centre, std::int64_t{3} * r.bodies);
+  a.real(f.gravity);
+  a.count(f.pairs, kMaxFramePairs);
+  const std::int64_t poses = std::int64_t{kMotions} * f.pairs;
+  for (std::int32_t i = 0; i < f.pairs; ++i) {
+    a.count(f.pair[i].elements, kMaxFrameElements);
+    for (int k = 0; k < 2; ++k) {
+      a.count(f.pair[i].body[k], r.bodies);
+      a.count(f.pair[i].boxes[k], 1);
+    }
+  }
+  a.count(f.elements, kMaxFrameElements);
+  a.structures(f.element, f.elements);
+  a.reals(f.stiffness, 24 * poses);
+  a.reals(f.preload, 2 * poses);
+  std::int32_t series = f.series != nullptr ? 1 : 0;
+  a.count(series, 1);
+  a.reals(f.series, series * n * poses);
+  a.reals(f.stops, poses * r.stops);
+  a.reals(f.rods, poses * r.rods);
+  a.reals(f.rod_moved, r.rods > 0 ? n * poses : 0);
+  a.reals(f.rod_reaction, r.rods > 0 ? poses * constraint_count(r) : 0);
 }
 }  // namespace railstep

@@ -6,6 +6,7 @@
 #include "online/math/diagonals.h"
 #include "online/model/cant.h"
 #include "online/model/caps.h"
+#include "online/model/design_line.h"
 #include "online/model/runner_model.h"
 #include "online/model/scheme.h"
 #include "online/model/signal.h"
@@ -297,6 +298,7 @@ struct Model {
   std::int32_t steps_per_frame;
   std::int32_t inputs;             // numbers of each frame
   double input_limit[kMaxInputs];  // N or N m, above 0: they saturate at both signs of it
+  DesignLine design_line;          // which vehicles in space follow
   double element_length;           // m
   Endless endless;
   double rail_y[2];  // of the rails' axes, m

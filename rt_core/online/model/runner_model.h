@@ -117,6 +117,8 @@ inline constexpr int kMaxWheelsetsOfRunner = 8;
 inline constexpr int kMaxRunnerWheelsets = 16;  // of all runners
 inline constexpr int kMaxSeatedWheelsets = 8;   // of all on rails that give way
 inline constexpr int kMaxRunnerUnknowns = 256;  // of one runner
+inline constexpr int kMaxFramePairs = 64;       // of one runner
+inline constexpr int kMaxFrameElements = 1024;  // of one runner
 
 /// A wheelset of a runner.
 struct RunnerWheelset {
@@ -124,6 +126,39 @@ struct RunnerWheelset {
   double place;         // along x from the runner's origin, m
   double radius;        // m
   double spin_inertia;  // kg m2
+};
+
+/// An element between two bodies: `arm` from the centre of each body to its end at rest. Along a
+/// line only the first entries of the others count.
+struct FrameElement {
+  double along_line;  // its length at rest, m; 0: springs along and about the axes halfway between
+                      // both bodies
+  double arm[2][3];   // m
+  double stiffness[6], damping[6];  // N/m and N m/rad; N s/m and N m s/rad
+  double preload[6];  // on the first body at rest, N and N m; along a line its tension
+};
+/// Two bodies that elements join, whether each is a wheelset, whose boxes leave its spin alone, and
+/// how many elements they are.
+struct FramePair {
+  std::int32_t body[2], boxes[2], elements;
+};
+/// The frames of a runner's bodies on a design line. Each is at its body's own place, so that in
+/// curves those of a pair stand turned and aside of each other. A pose is that of the second one's
+/// frame in the first one's. Null without a design line.
+struct RunnerFrames {
+  const double* centre;  // [bodies][3] of each body at rest: x from the runner's origin, y, z, m
+  double gravity;        // m/s2
+  std::int32_t pairs;
+  FramePair pair[kMaxFramePairs];
+  std::int32_t elements;  // of all pairs, in their order
+  const FrameElement* element;
+  const double* stiffness;  // [pairs][12][12] of a pair's elements over its motions
+  const double* preload;    // [pairs][12] of its elements on both bodies, N and N m
+  const double* series;  // [size][6 pairs] forces against poses by springs in series with dampers
+  const double* stops;   // [stops][6 pairs] displacement of each
+  const double* rods;    // [rods][6 pairs] elongation of each
+  const double* rod_moved;     // [size][6 pairs] displacements by which the rods keep their length
+  const double* rod_reaction;  // [1 + rods][6 pairs] as `reaction`
 };
 
 /// A vehicle in space on both rails. q are the six motions of each body, then the deflection of
@@ -150,6 +185,7 @@ struct RunnerModel : SuspendedModel {
   /// [6 wheelsets + stops][6 wheelsets + stops] theta times the part of the inverse for the
   /// wheelsets' motions, then for the stops.
   const double* compliance;
+  RunnerFrames frames;
 };
 
 /// A wheel among those of all runners: its number counts left and right of each wheelset in turn.

@@ -214,10 +214,23 @@ void generalise(const WheelRows<T>& r, const ContactForces<T>& f, T* force) noex
 }
 
 /// Deviation of both railheads from straight, level lines under a wheelset, m, roll of their
-/// sections, rad, and the part of their friction: [left, right].
+/// sections, rad, and the part of their friction: [left, right]. Rates at which the frame pitches
+/// and yaws on a design line, rad/s, and its place among the motions along x, m.
 struct RailsUnder {
   double y[2] = {}, z[2] = {}, roll[2] = {}, grip[2] = {1., 1.};
+  double frame_pitch = 0., frame_yaw = 0., frame_x = 0.;
 };
+/// Adds what the turning of a wheelset's frame makes to the rates of its material.
+/// @param u, v  [6] motions of the wheelset, and their rates
+inline void add_frame_rates(const RailsUnder& rails, double radius, const double* u,
+                            double* v) noexcept {
+  const double ahead = u[0] - rails.frame_x;
+  v[0] += rails.frame_pitch * (radius + u[2]) - rails.frame_yaw * u[1];
+  v[1] += rails.frame_yaw * ahead;
+  v[2] -= rails.frame_pitch * ahead;
+  v[4] += rails.frame_pitch;
+  v[5] += rails.frame_yaw;
+}
 /// The motions of a wheelset over one of its rails. @param over  [6] out
 inline void place_over_rail(const RailsUnder& rails, int side, const double* u,
                             double* over) noexcept {

@@ -11,8 +11,9 @@ namespace {
 constexpr double kLargeTurn = .1;  // rad, of a body in its frame: sines are 0.2 % off
 
 /// The forces of a runner's constraints, and how far its rods are from their lengths.
+/// @param poses  of the frames on a design line; else null
 void publish_constraints(const Model& model, const RunnerModel& runner, const State& at,
-                         Outputs& out) noexcept {
+                         const double* poses, Outputs& out) noexcept {
   const double* const reaction = reactions_of(model, at, runner);
   const std::ptrdiff_t own = &runner - model.runner;
   const bool free = runner.rolls_freely != 0;
@@ -22,15 +23,17 @@ void publish_constraints(const Model& model, const RunnerModel& runner, const St
   for (std::int32_t j = 0; j < runner.rods; ++j) {
     out.rod_tension[runner.first_rod + j] = reaction[1 + j];
     const double* const row = runner.rod_row + std::ptrdiff_t{runner.size} * j;
-    const double longer = std::fabs(dot(row, at.u + runner.first, runner.size));
+    double longer = dot(row, at.u + runner.first, runner.size);
+    if (poses != nullptr) longer += by_poses(runner, runner.frames.rods, j, poses);
+    longer = std::fabs(longer);
     if (longer > out.constraint_violation) out.constraint_violation = longer;
   }
 }
 
 void publish_stops(const Model& model, const RunnerModel& runner, const State& at,
-                   Outputs& out) noexcept {
+                   const double* poses, Outputs& out) noexcept {
   for (std::int32_t j = 0; j < runner.stops; ++j)
-    out.stop_force[runner.first_stop + j] = standing_stop(model, runner, j, at).force.force;
+    out.stop_force[runner.first_stop + j] = standing_stop(model, runner, j, at, poses).force.force;
 }
 
 bool has_large_turn(const RunnerModel& runner, const State& at) noexcept {
@@ -47,8 +50,7 @@ void publish_wheelset(const Model& model, const RunnerModel& runner, int i, cons
                       Outputs& out) noexcept {
   const std::int32_t set = runner.first_wheelset + i;
   const double* const u = at.u + runner.first + runner.wheelset[i].first;
-  const double place =
-      element_place(model, runner, i, {at.steps, 0., ahead_of(runner, at.u + runner.first)});
+  const double place = element_place(model, runner, i, along_in(runner, at));
   out.wheelset_sum_y[set] = 0.;
   for (int side = 0; side < 2; ++side) {
     const std::int32_t wheel = WheelId{set, side}.number();
@@ -78,14 +80,67 @@ WheelForce force_on_wheel(const RollingContact& c, double radius, double side,
   return profile_force(c, wheel, radius, side, rolling, at, v, rate, stiffness);
 }
 
+namespace {
+
+double time_of(const Model& model, const AlongTrack& at) noexcept {
+  return static_cast<double>(at.step) * model.scheme.dt - at.before;
+}
+
+/// Place of a runner's origin along the model's elements, m.
+double origin_place(const Model& model, const RunnerModel& runner, const AlongTrack& at) noexcept {
+  const double way = model.lines == 0 ? travelled(runner.travel, time_of(model, at)).distance
+                                      : way_at(model, runner.travel, at.step, at.before).distance;
+  return runner.start + (way + at.ahead);
+}
+
+/// From a place along the model's elements to one along the track, m.
+double offset_of(const Model& model, const AlongTrack& at) noexcept {
+  return model.lines > 0 ? track_offset(model, at.step) : 0.;
+}
+
+}  // namespace
+
 double element_place(const Model& model, const RunnerModel& runner, int wheelset,
                      const AlongTrack& at) noexcept {
-  const double way =
-      model.lines == 0
-          ? travelled(runner.travel, static_cast<double>(at.step) * model.scheme.dt - at.before)
-                .distance
-          : way_at(model, runner.travel, at.step, at.before).distance;
-  return (runner.start + (way + at.ahead)) + runner.wheelset[wheelset].place;
+  return origin_place(model, runner, at) + runner.wheelset[wheelset].place;
+}
+
+OnLine on_line(const Model& model, const RunnerModel& runner, const AlongTrack& at) noexcept {
+  const Travelled frame = travelled(runner.travel, time_of(model, at));
+  return {(origin_place(model, runner, at) + offset_of(model, at)) + runner.frames.centre[0],
+          frame.speed + at.speed, frame.acceleration};
+}
+
+LineBodies line_bodies(const RunnerModel& runner) noexcept {
+  return {runner.bodies, runner.frames.centre, runner.mass, runner.frames.gravity};
+}
+
+const double* poses_of(const Model& model, const RunnerModel& runner, const AlongTrack& at,
+                       double* pose) noexcept {
+  if (!is_there(model.design_line)) return nullptr;
+  find_poses(model.design_line, on_line(model, runner, at), runner.frames, pose);
+  return pose;
+}
+
+void add_line_forces(const Model& model, const RunnerModel& runner, const OnLine& at, double span,
+                     const double* u, const double* v, double* force) noexcept {
+  const DesignLine& line = model.design_line;
+  add_frame_forces(line, at, line_bodies(runner), span, force);
+  for (std::int32_t i = 0; i < runner.wheelsets; ++i) {
+    const RunnerWheelset& set = runner.wheelset[i];
+    const double beyond = runner.rolls_freely != 0 ? v[set.first + index_of(BodyMotion::pitch)]
+                                                   : at.speed / set.radius;
+    const double place = at.place + (set.place - runner.frames.centre[0]);
+    add_gyroscopic(rotation_at(line, place), at.speed, set.spin_inertia * beyond,
+                   force + set.first);
+  }
+  add_pair_forces(line, at, runner.frames, u, force);
+  if (runner.frames.series == nullptr) return;
+  const std::int32_t n = kMotions * runner.frames.pairs;
+  double pose[kMostPoses];
+  find_poses(line, at, runner.frames, pose);
+  for (std::int32_t k = 0; k < n; ++k) pose[k] = -pose[k];
+  columns_multiply_add(runner.frames.series, pose, force, runner.size, n);
 }
 
 BrakeStep brake_step(const RunnerModel& runner, std::int32_t j, double time,
@@ -95,10 +150,11 @@ BrakeStep brake_step(const RunnerModel& runner, std::int32_t j, double time,
 }
 
 StandingStop standing_stop(const Model& model, const RunnerModel& runner, std::int32_t j,
-                           const State& at) noexcept {
+                           const State& at, const double* poses) noexcept {
   const StopModel& stop = runner.stop[j];
   const double* const row = runner.stop_row + std::ptrdiff_t{runner.size} * j;
   double z = dot(row, at.u + runner.first, runner.size);
+  if (poses != nullptr) z += by_poses(runner, runner.frames.stops, j, poses);
   if (!is_brake(stop)) return {z, stop_force(stop, z)};
   const double time = static_cast<double>(at.steps) * model.scheme.dt;
   const Travelled frame = travelled(runner.travel, time);
@@ -135,9 +191,16 @@ RailsUnder rails_under(const Model& model, const RunnerModel& runner, int wheels
   RailsUnder rails;
   if (slopes != nullptr) *slopes = {};
   const RollingFriction& friction = runner.contact.creep.friction;
-  if (model.signals == 0 && friction.places == 0) return rails;
-  const double x = element_place(model, runner, wheelset, at) +
-                   (model.lines > 0 ? track_offset(model, at.step) : 0.);
+  const bool on_design_line = is_there(model.design_line);
+  if (model.signals == 0 && friction.places == 0 && !on_design_line) return rails;
+  const double x = element_place(model, runner, wheelset, at) + offset_of(model, at);
+  if (on_design_line) {
+    const double speed = travelled(runner.travel, time_of(model, at)).speed + at.speed;
+    const FrameRotation rotation = rotation_at(model.design_line, x);
+    rails.frame_pitch = speed * rotation.y;
+    rails.frame_yaw = speed * rotation.z;
+    rails.frame_x = at.ahead;
+  }
   grip_at(friction, x, rails.grip);
   for (std::int32_t i = 0; i < model.signals; ++i) {
     const RailSignal& own = model.signal[i];
@@ -153,8 +216,12 @@ Status publish_runners(const Model& model, const State& at, Outputs& outputs) no
   for (std::int32_t n = 0; n < model.runners; ++n) {
     const RunnerModel& runner = model.runner[n];
     for (int i = 0; i < runner.wheelsets; ++i) publish_wheelset(model, runner, i, at, outputs);
-    publish_constraints(model, runner, at, outputs);
-    publish_stops(model, runner, at, outputs);
+    double pose[kMostPoses];
+    const double* const poses = runner.stops + runner.rods > 0
+                                    ? poses_of(model, runner, along_in(runner, at), pose)
+                                    : nullptr;
+    publish_constraints(model, runner, at, poses, outputs);
+    publish_stops(model, runner, at, poses, outputs);
     if (has_large_turn(runner, at)) met = met | Status::large_turn;
   }
   return met;

@@ -1,5 +1,7 @@
 #pragma once
+#include "online/math/dense.h"
 #include "online/model/state.h"
+#include "online/runner/frames.h"
 #include "online/runner/profile_contact.h"
 
 namespace railstep {
@@ -11,7 +13,35 @@ struct AlongTrack {
   std::int64_t step;
   double before;      // s before the end of the step
   double ahead = 0.;  // m, ahead_of() of runners that roll freely
+  double speed = 0.;  // m/s, by which they are faster than their frame
 };
+
+/// How the first body of a runner goes along the design line. Acceleration is that of the frame.
+OnLine on_line(const Model& model, const RunnerModel& runner, const AlongTrack& at) noexcept;
+LineBodies line_bodies(const RunnerModel& runner) noexcept;
+/// Where a runner is in a state.
+inline AlongTrack along_in(const RunnerModel& runner, const State& at) noexcept {
+  return {at.steps, 0., ahead_of(runner, at.u + runner.first),
+          ahead_of(runner, at.v + runner.first)};
+}
+inline constexpr int kMostPoses = kMotions * kMaxFramePairs;
+/// Poses of the frames of a runner's bodies. @param pose  [6 frames.pairs] out
+/// @returns pose; null without a design line
+const double* poses_of(const Model& model, const RunnerModel& runner, const AlongTrack& at,
+                       double* pose) noexcept;
+/// Adds what a design line does to a runner: the forces of frames that accelerate and lean, those
+/// of the suspension between frames that stand turned and aside, and gyroscopic moments.
+/// @param span   s, as of frame_motion()
+/// @param u, v   [size] motions and rates, of which those of free runners' spins count
+/// @param force  [size]
+void add_line_forces(const Model& model, const RunnerModel& runner, const OnLine& at, double span,
+                     const double* u, const double* v, double* force) noexcept;
+/// Displacement of a stop or elongation of a rod by the poses of frames. @param rows  its table
+inline double by_poses(const RunnerModel& runner, const double* rows, std::int32_t row,
+                       const double* poses) noexcept {
+  const std::int32_t n = kMotions * runner.frames.pairs;
+  return dot(rows + std::ptrdiff_t{n} * row, poses, n);
+}
 
 /// @param slopes  out: derivatives along x; null: none
 RailsUnder rails_under(const Model& model, const RunnerModel& runner, int wheelset,
@@ -49,12 +79,13 @@ BrakeStep brake_step(const RunnerModel& runner, std::int32_t j, double time,
 
 /// Displacement of a stop in a state, and its force. The displacement of a brake includes the turn
 /// by which its wheels roll along the frame's way.
+/// @param poses  of poses_of()
 struct StandingStop {
   double z;
   StopForce force;
 };
 StandingStop standing_stop(const Model& model, const RunnerModel& runner, std::int32_t j,
-                           const State& at) noexcept;
+                           const State& at, const double* poses) noexcept;
 
 /// Publishes the wheels and wheelsets of all runners, and the forces that hold them at their
 /// places.

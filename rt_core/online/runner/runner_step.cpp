@@ -35,6 +35,31 @@ void find_frame_forces(const RunnerStage& at, const State& s, const Workspace& w
     force[yaw] -= momentum * rate(roll);
     force[spin] -= set.spin_inertia * (way.acceleration / set.radius);
   }
+  if (!is_there(at.model.design_line)) return;
+  OnLine on = on_line(at.model, r, at.along(at.held, s));
+  if (r.rolls_freely != 0) {
+    on.faster += (rate(0) - s.v[r.first]) / (at.held * at.stage.span);
+    on.speed = way.speed + rate(0);
+  }
+  // The motions to which the last acceleration leads.
+  double u[kMaxRunnerUnknowns];
+  for (std::int32_t k = 0; k < r.size; ++k) {
+    const double before = s.u[r.first + k];
+    const double end = w.u_star[r.first + k] + s.g[r.first + k] / at.model.scheme.kg;
+    u[k] = before + at.held * (end - before);
+  }
+  add_line_forces(at.model, r, on, at.model.scheme.dt, u, s.v + r.first, force);
+}
+
+/// Keeps the lengths of rods between bodies whose frames stand turned and aside of each other.
+void keep_rods(const RunnerStage& at, const State& s, double* u, double* reaction) noexcept {
+  const RunnerModel& r = at.runner;
+  const std::int32_t poses = kMotions * r.frames.pairs;
+  double pose[kMostPoses];
+  static_cast<void>(poses_of(at.model, r, at.along(1., s), pose));
+  columns_multiply_add(r.frames.rod_moved, pose, u, r.size, poses);
+  for (std::int32_t c = 0; c < constraint_count(r); ++c)
+    reaction[c] += by_poses(r, r.frames.rod_reaction, c, pose);
 }
 
 /// The way of a runner that rolls freely and the spins of its wheelsets, which grow without end and
@@ -66,6 +91,7 @@ void move_freely(const RunnerStage& at, State& s, const Workspace& w, double* u)
   double* const reaction = reactions_of(at.model, s, r);
   for (std::int32_t c = 0; c < constraint_count(r); ++c)
     reaction[c] = dot(r.reaction + std::ptrdiff_t{r.size} * c, force, r.size);
+  if (r.rods > 0 && is_there(at.model.design_line)) keep_rods(at, s, u, reaction);
 }
 
 void find_motion(const RunnerStage& at, int wheelset, const State& s, const Workspace& w,
@@ -90,6 +116,9 @@ void find_stops(const RunnerStage& at, const State& s, const Workspace& w, const
                 double* free, double* start, BrakeStep* brake) noexcept {
   const RunnerModel& r = at.runner;
   const Scheme& c = at.model.scheme;
+  double pose[kMostPoses];
+  const double* const poses =
+      r.stops > 0 ? poses_of(at.model, r, at.along(c.theta, s), pose) : nullptr;
   const double time = at.time(c.theta);
   const Travelled frame = travelled(r.travel, time);
   const double *u0 = s.u + r.first, *u_star = w.u_star + r.first, *g = s.g + r.first;
@@ -99,6 +128,11 @@ void find_stops(const RunnerStage& at, const State& s, const Workspace& w, const
     free[j] = before + c.theta * (dot(row, u, r.size) - before);
     start[j] =
         before + c.theta * ((dot(row, u_star, r.size) + dot(row, g, r.size) / c.kg) - before);
+    if (poses != nullptr) {
+      const double moved = by_poses(r, r.frames.stops, j, poses);
+      free[j] += moved;
+      start[j] += moved;
+    }
     if (!is_brake(r.stop[j])) continue;
     // Whole turns count from the anchor.
     brake[j] = brake_step(r, j, time, s);

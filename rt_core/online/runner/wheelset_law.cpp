@@ -73,6 +73,7 @@ void WheelsetLaw::place(const double* z, Placed& at) const noexcept {
     at.u[k] = is_earlier(BodyMotion{k}) ? z[k] - later * at.v[k] : z[k];
   }
   at.under = rails;
+  add_frame_rates(rails, runner->wheelset[wheelset].radius, at.u, at.v);
   for (int side = 0; side < 2; ++side) {
     at.moving[side] = {0., uneven_rate[side], 0.};
     if (!seated) continue;
@@ -191,6 +192,9 @@ WheelsetLaw law_of(const RunnerStage& at, int wheelset, bool seated, const State
   law.seated = seated;
   RailsUnder slope;
   law.rails = rails_under(at.model, runner, wheelset, at.along(theta, s), &slope);
+  // find_motion() counts the way of a free runner from the stage's start.
+  if (runner.rolls_freely != 0)
+    law.rails.frame_x -= s.u[runner.first + runner.wheelset[wheelset].first];
   law.ahead = frame + ahead_of(runner, s.v + runner.first);
   law.rate = at.rate;
   law.seat_rate = banded ? 1. / at.stage.span : at.rate;

@@ -22,7 +22,7 @@ struct RunnerStage {
   AlongTrack along(double fraction, const State& s) const noexcept {
     const double rolled = ahead_of(runner, s.u + runner.first) +
                           fraction * stage.span * ahead_of(runner, s.v + runner.first);
-    return {stage.step, before(fraction), rolled};
+    return {stage.step, before(fraction), rolled, ahead_of(runner, s.v + runner.first)};
   }
 };
 RunnerStage stage_of(const Model& model, const RunnerModel& runner, const Stage& stage) noexcept;
