@@ -139,7 +139,7 @@ class Vehicle {
   static constexpr double kGravity = 9.81, kRadius = .46, kHalfDistance = .75, kCrown = .3,
                           kHertz = 94125079189.525375;
   static constexpr std::array<double, 4> kCreep = {9.25e6, 8.52e6, 1.95e4, 53.8};
-  static constexpr std::array<double, kBodies> kPlace = {0., 9.5, -9.5, 10.78, 8.22, -8.22, -10.78};
+  static constexpr double kPlace[kBodies] = {0., 9.5, -9.5, 10.78, 8.22, -8.22, -10.78};
   static constexpr std::array<double, kBodies> kHeight = {1.8, .6, .6, .46, .46, .46, .46};
   static constexpr std::array<double, kBodies> kMass = {32000., 2615., 2615., 1813.,
                                                         1813.,  1813., 1813.};
