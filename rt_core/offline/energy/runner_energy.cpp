@@ -26,6 +26,7 @@ std::vector<StandingStop> standing_stops(const Model& model, const RunnerModel& 
   std::vector<double> pose(kMostPoses);
   const double* const poses = poses_of(model, runner, along_in(runner, at), pose.data());
   std::vector<StandingStop> all;
+  all.reserve(static_cast<std::size_t>(runner.stops));
   for (std::int32_t j = 0; j < runner.stops; ++j)
     all.push_back(standing_stop(model, runner, j, at, poses));
   return all;
