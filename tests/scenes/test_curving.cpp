@@ -265,5 +265,7 @@ TEST_CASE("a design line that a vehicle cannot follow is refused", "[curving]") 
   };
   refused("line.curvature_table=[[0.0,0.02]]", "E-LINE-03");
   refused("line.cant_table=[[0.0,0.0],[0.0,0.1]]", "E-LINE-02");
+  refused("line.cant_table=[[0.0,0.0],[1.0,0.1]]", "E-LINE-06");
+  refused("line.gradient_table=[[0.0,0.0],[1e300,0.1]]", "E-LINE-07");
   refused("line.transition=\"sine\"", "transition");
 }

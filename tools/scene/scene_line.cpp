@@ -7,8 +7,9 @@
 namespace railstep {
 namespace {
 
-constexpr double kCantDistance = 1.5;   // m, over which a cant is measured
-constexpr double kMostCantHeight = .3;  // m
+constexpr double kCantDistance = 1.5;         // m, over which a cant is measured
+constexpr double kMostCantHeight = .3;        // m
+const Range kLinePlace = between(-1e7, 1e7);  // m
 
 /// [[place (m), value], ...] with rising places. @param steepest  most change by length
 std::vector<double> read_line_table(const Table& t, const char* key, double most, double steepest) {
@@ -19,6 +20,9 @@ std::vector<double> read_line_table(const Table& t, const char* key, double most
         key, "E-LINE-01",
         fmt::format("{} has {} rows; expected at most {}", key, rows.size() / 2, kMostLineRows));
   for (std::size_t i = 0; i < rows.size(); i += 2) {
+    if (!kLinePlace.holds(rows[i]))
+      t.refuse(key, "E-LINE-07",
+               fmt::format("{}: a row at {:.15g} m; expected {}", key, rows[i], kLinePlace.text()));
     if (i > 0 && !(rows[i] > rows[i - 2]))
       t.refuse(key, "E-LINE-02",
                fmt::format("{}: the place {:.15g} m follows {:.15g} m; expected places that rise",

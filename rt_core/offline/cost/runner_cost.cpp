@@ -75,7 +75,7 @@ Cost brakes_cost(const RunnerModel& runner) {
   return sum;
 }
 
-// On a design line: what a frame's place says, and of a pose beside each piece of the tables.
+// A design line: the rotation of a frame at a place, a pose, and one piece of a table beside it.
 constexpr Cost kRotation = branching(350, 150), kPose = branching(900, 350),
                kLinePiece = branching(240, 80);
 
@@ -92,7 +92,7 @@ Cost poses_cost(const Model& model, const RunnerModel& runner) {
              (kPose + 3 * line_tables_cost(line) + 2 * std::int64_t{line.pieces} * kLinePiece) +
          (runner.stops + runner.rods) * work(2 * poses + 2, 2 * poses);
 }
-/// What the design line does to a runner in a stage.
+/// Forces of the design line on a runner in a stage.
 Cost design_line_cost(const Model& model, const RunnerModel& runner) {
   if (!is_there(model.design_line)) return {};
   const std::int64_t poses = kMotions * std::int64_t{runner.frames.pairs}, n = runner.size,

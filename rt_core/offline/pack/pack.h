@@ -292,7 +292,7 @@ class PackedModel {
                    const std::array<Railhead, 2>& heads);
   void add_runner(const Track& track, const RailVehicle& vehicle);
   void add_design_line(const Traffic& traffic);
-  /// @param first_rod  row of the first rod among the constraints
+  /// Adds the tables of the bodies' frames. @param step  the runner's response in a step
   void add_frames(const RailVehicle& vehicle, const RunnerMatrices& m,
                   const SuspendedResponse& step, RunnerModel& packed);
   /// Friction that falls over slip is a damper of negative rate. A step has one solution as long as

@@ -6,7 +6,7 @@
 
 namespace railstep {
 
-/// What is between the bodies' frames: RunnerFrames. Columns are poses.
+/// The tables of RunnerFrames. The columns of its matrices are poses.
 struct FrameMatrices {
   std::vector<FramePair> pairs;
   std::vector<FrameElement> elements;

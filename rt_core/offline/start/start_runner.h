@@ -11,7 +11,8 @@ struct SettledRunners {
   std::vector<SteadyRunning> steady;  // of each
   /// [wheelsets of all][left, right] forces on the wheel.
   std::vector<std::array<WheelForce, 2>> wheels;
-  /// Of each, of settle_runners(): deflections of its dampers in series with springs.
+  /// Deflections of the dampers of each that are in series with springs; settle_runners() fills
+  /// them.
   std::vector<std::vector<double>> series = {};
 };
 

@@ -40,9 +40,9 @@ struct FramePose {
 };
 FramePose pose_between(const DesignLine& line, double from, double to) noexcept;
 
-/// What a frame's motion and the line's slope are to a body at rest in it: acceleration of the
-/// frame's origin less that of gravity, as it differs from straight, level track, m/s2; rates of
-/// rotation, rad/s, and angular accelerations, rad/s2.
+/// A frame's motion as a body at rest in it feels it. `acceleration` is that of the frame's origin
+/// less that of gravity, beyond its value on straight, level track, m/s2; `rate` is the angular
+/// rate, rad/s, and `angular` its derivative, rad/s2.
 struct FrameMotion {
   double acceleration[3], rate[3], angular[3];
 };
