@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
-#include <filesystem>
-#include <fstream>
 #include <string>
 #include <vector>
 
@@ -12,9 +10,8 @@
 #include "offline/energy/energy_account.h"
 #include "online/step/step.h"
 #include "run/simulation.h"
-#include "support/program.h"
+#include "support/own_element.h"
 #include "support/scene_run.h"
-#include "support/shipped.h"
 
 using namespace railstep;
 
@@ -22,17 +19,9 @@ namespace {
 
 /// A scene of the shipped vehicle with one more element between its car and its first bogie.
 Scene scene_with(const std::string& element, const std::string& scene,
-                 std::vector<std::string> words) {
-  const std::filesystem::path folder = fresh_folder("bump_stop");
-  std::filesystem::create_directories(folder);
-  const auto file = folder / "vehicle.toml";
-  std::ofstream(file) << text_of(std::filesystem::path(RAILSTEP_SOURCE) / "config" / "vehicles" /
-                                 "manchester_1.toml")
-                      << "\n[[element]]\nname = \"stop\"\nbetween = [\"car\", \"bogie_1\"]\n"
-                      << "point_m = [9.5, 0.3, 0.9]\n"
-                      << element;
-  words.push_back("vehicle[0].file=\"" + file.string() + "\"");
-  return read_scene(shipped(scene), words);
+                 const std::vector<std::string>& words) {
+  return scene_with_elements(element_on_bogie("stop", "point_m = [9.5, 0.3, 0.9]\n" + element),
+                             scene, words);
 }
 
 const std::string kSpring =
@@ -54,19 +43,6 @@ double difference(const Traced& a, const Traced& b, const std::string& column) {
 }
 
 }  // namespace
-
-TEST_CASE("a bump stop presses from its gaps on, by the slope of its energy", "[bump_stop]") {
-  const StopModel stop{.01, .02, 2e7};
-  for (const double z : {-.05, -.0101, -.005, .0, .015, .0201, .07}) {
-    CAPTURE(z);
-    const StopForce at = stop_force(stop, z);
-    const StopForce up = stop_force(stop, z + 1e-6), down = stop_force(stop, z - 1e-6);
-    CHECK((up.energy - down.energy) / 2e-6 == Approx(-at.force).margin(1e-4));
-    CHECK((up.force - down.force) / 2e-6 == Approx(at.slope).margin(1e-4));
-  }
-  CHECK(stop_force(stop, -.03).force == Approx(2e7 * .02));
-  CHECK(stop_force(stop, .03).force == Approx(-2e7 * .01));
-}
 
 TEST_CASE("a bump stop without gap is a spring", "[bump_stop]") {
   for (const char* scene : {"manchester_straight", "manchester_ring"})

@@ -98,6 +98,11 @@ const std::vector<Partner> kPartners = {
       "joint=[{name=\"pin\",kind=\"revolute\",between=[\"rail right\",\"bar\"],"
       "point_m=[24.0,-0.75,-0.1],axis=[1,0,0]}]"},
      Partner::ends},
+    {"friction, guards and a controlled damper",
+     {"vehicle[0].file=\"../vehicles/freight_wagon.toml\"",
+      "vehicle[0].actuator=[{name=\"valve\",between=[\"car\",\"leading\"],acts=\"damping\","
+      "point_m=[4.5,0.0,0.46],axis=\"y\",table=[[0.0,0.0],[0.05,1e4]]}]"},
+     Partner::nothing},
     {"a brake",
      {"vehicle[0].brake=[{name=\"disc\",wheelset=\"leading_1\",on=\"bogie_1\","
       "table=[[0.0,0.0],[0.01,2e3]]}]"},

@@ -205,8 +205,8 @@ TraceNames names_of(const Scene& scene, std::vector<std::string> track_sensors) 
   for (const RailVehicleScene& vehicle : scene.rail_vehicles) {
     names.runners.push_back(vehicle.name);
     names.rods.insert(names.rods.end(), vehicle.rods.begin(), vehicle.rods.end());
-    names.bump_stops.insert(names.bump_stops.end(), vehicle.bump_stops.begin(),
-                            vehicle.bump_stops.end());
+    names.force_elements.insert(names.force_elements.end(), vehicle.force_elements.begin(),
+                                vehicle.force_elements.end());
     for (const std::string& set : vehicle.wheelsets) {
       names.runner_wheelsets.push_back(set);
       names.runner_wheels.insert(names.runner_wheels.end(), {set + "_left", set + "_right"});

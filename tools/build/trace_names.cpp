@@ -25,8 +25,8 @@ struct ColumnNames {
         return names.runners;
       case ColumnOf::rod:
         return names.rods;
-      case ColumnOf::bump_stop:
-        return names.bump_stops;
+      case ColumnOf::force_element:
+        return names.force_elements;
       case ColumnOf::external_wheel:
         return names.external_wheels;
       case ColumnOf::sensor:

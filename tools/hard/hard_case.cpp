@@ -20,9 +20,10 @@ double way(const HardCheck& check) {
 
 std::vector<HardCase> hard_cases() {
   std::vector<HardCase> all;
-  for (const auto& part : {contact_cases(), element_cases(), input_cases(), joint_cases(),
-                           model_cases(), profile_cases(), stability_cases(), step_cases(),
-                           support_cases(), track_cases(), traffic_cases(), wheel_cases()})
+  for (const auto& part :
+       {contact_cases(), element_cases(), input_cases(), joint_cases(), model_cases(),
+        profile_cases(), stability_cases(), step_cases(), support_cases(), suspension_cases(),
+        track_cases(), traffic_cases(), wheel_cases()})
     all.insert(all.end(), part.begin(), part.end());
   const auto number = [](const HardCase& own) { return std::atoi(own.id + 1); };
   std::sort(all.begin(), all.end(),

@@ -53,6 +53,7 @@ std::vector<HardCase> profile_cases();
 std::vector<HardCase> stability_cases();
 std::vector<HardCase> step_cases();
 std::vector<HardCase> support_cases();
+std::vector<HardCase> suspension_cases();
 std::vector<HardCase> track_cases();
 std::vector<HardCase> traffic_cases();
 std::vector<HardCase> wheel_cases();

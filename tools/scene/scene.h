@@ -176,7 +176,7 @@ struct RailVehicleScene : RailVehicle {
   std::vector<Part> parts;
   std::vector<std::string> wheelsets;  // NAME.BODY; their wheels are NAME.BODY_left and _right
   std::vector<std::string> rods;       // of rigid rods, in the order of the runner's elements
-  std::vector<std::string> bump_stops;
+  std::vector<std::string> force_elements;
   std::vector<std::size_t> couplers;  // elements along a line whose force is traced
 };
 

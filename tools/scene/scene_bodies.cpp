@@ -267,12 +267,12 @@ OuterForce read_body_force(const Table& t, int direction, bool moment,
   if (!t.has("input")) return {direction, read_force_table(t, "table", kForce)};
   if (t.has("table"))
     t.refuse("table", "E-RUNNER-25", "table is given beside input; expected one of them");
-  return {direction, {}, read_input(t, moment, inputs)};
+  return {direction, {}, read_input(t, moment ? "moment_n_m" : "force_n", inputs)};
 }
 
-int read_input(const Table& t, bool moment, std::vector<InputScene>& inputs) {
+int read_input(const Table& t, std::string_view quantity, std::vector<InputScene>& inputs) {
   const std::string name =
-      checked_name(t, "input", t.string("input")) + (moment ? ".moment_n_m" : ".force_n");
+      fmt::format("{}.{}", checked_name(t, "input", t.string("input")), quantity);
   for (const InputScene& other : inputs)
     if (other.name == name)
       t.refuse(
@@ -281,7 +281,9 @@ int read_input(const Table& t, bool moment, std::vector<InputScene>& inputs) {
   if (inputs.size() == static_cast<std::size_t>(kMaxInputs))
     t.refuse("input", "E-RUNNER-18",
              fmt::format("there are more than {0} inputs; expected at most {0}", kMaxInputs));
-  inputs.push_back({name, t.number(moment ? "limit_n_m" : "limit_n", above_upto(0.0, 1e12))});
+  // limit_n of force_n, limit_n_s_per_m of damping_n_s_per_m, and so on.
+  const std::string limit = "limit" + std::string(quantity.substr(quantity.find('_')));
+  inputs.push_back({name, t.number(limit, above_upto(0.0, 1e12))});
   return static_cast<int>(inputs.size()) - 1;
 }
 
@@ -293,7 +295,7 @@ void claim_in_space(const Table& t, const std::string& name, const Scene& scene,
     for (const RailVehicleScene::Part& part : own.parts) {
       if (part.name != name) continue;
       names.claim(t, "name", name);
-      for (const auto* all : {&own.wheelsets, &own.rods, &own.bump_stops})
+      for (const auto* all : {&own.wheelsets, &own.rods, &own.force_elements})
         for (const std::string& of_part : *all)
           if (of_part.starts_with(name + ".")) names.claim(t, "name", of_part);
     }

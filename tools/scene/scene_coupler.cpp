@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "scene/scene_read.h"
+#include "scene/vehicle_read.h"
 
 namespace railstep {
 namespace {
@@ -54,15 +54,17 @@ void move_on(RunnerElement& e, int bodies, double ahead) {
   e.point_a[0] += ahead;
   e.point_b[0] += ahead;
 }
-void move_on(RunnerStop& s, int bodies, double ahead) {
+void move_on(RunnerForceElement& s, int bodies, double ahead) {
   for (int* body : {&s.a, &s.b})
     if (*body != kGround) *body += bodies;
-  s.point[0] += ahead;
+  s.point_a[0] += ahead;
+  s.point_b[0] += ahead;
 }
 
 /// Adds a train to another one. Its places count from the other's origin then.
 void append(const RailVehicleScene& more, RailVehicleScene& train) {
   const auto bodies = static_cast<int>(train.runner.bodies.size());
+  const auto elements = static_cast<int>(train.runner.elements.size());
   const double ahead = more.start - train.start;
   for (RunnerBody body : more.runner.bodies) {
     body.centre[0] += ahead;
@@ -73,9 +75,10 @@ void append(const RailVehicleScene& more, RailVehicleScene& train) {
     move_on(element, bodies, ahead);
     train.runner.elements.push_back(element);
   }
-  for (RunnerStop stop : more.runner.stops) {
-    move_on(stop, bodies, ahead);
-    train.runner.stops.push_back(stop);
+  for (RunnerForceElement element : more.runner.force_elements) {
+    move_on(element, bodies, ahead);
+    if (element.pressed_by >= 0) element.pressed_by += elements;
+    train.runner.force_elements.push_back(element);
   }
   for (OuterForce force : more.forces) {
     force.direction += kMotions * bodies;
@@ -86,7 +89,7 @@ void append(const RailVehicleScene& more, RailVehicleScene& train) {
     train.parts.push_back(part);
   }
   for (auto names :
-       {&RailVehicleScene::wheelsets, &RailVehicleScene::rods, &RailVehicleScene::bump_stops}) {
+       {&RailVehicleScene::wheelsets, &RailVehicleScene::rods, &RailVehicleScene::force_elements}) {
     std::vector<std::string>& all = train.*names;
     all.insert(all.end(), (more.*names).begin(), (more.*names).end());
   }
@@ -97,7 +100,10 @@ void place(RunnerElement& e, double ahead_a, double ahead_b) {
   e.point_a[0] += ahead_a;
   e.point_b[0] += e.kind == RunnerElement::Kind::mid_frame ? ahead_a : ahead_b;
 }
-void place(RunnerStop& s, double ahead_a, double) { s.point[0] += ahead_a; }
+void place(RunnerForceElement& e, double ahead_a, double ahead_b) {
+  e.point_a[0] += ahead_a;
+  e.point_b[0] += e.along == RunnerForceElement::Along::line ? ahead_b : ahead_a;
+}
 
 void note_element(const RunnerElement& e, RailVehicleScene& train) {
   if (e.kind == RunnerElement::Kind::rod)
@@ -105,8 +111,8 @@ void note_element(const RunnerElement& e, RailVehicleScene& train) {
   else if (e.kind == RunnerElement::Kind::line && e.series[0] == 0.)
     train.couplers.push_back(train.runner.elements.size());
 }
-void note_element(const RunnerStop& s, RailVehicleScene& train) {
-  train.bump_stops.push_back(s.name);
+void note_element(const RunnerForceElement& s, RailVehicleScene& train) {
+  train.force_elements.push_back(s.name);
 }
 
 /// Trains that grow coupler by coupler.
@@ -128,7 +134,7 @@ struct Trains {
       if (own.train == gone) own = {kept, own.first_body + bodies};
   }
   void add(const Table& t) {
-    const RunnerPart part = read_runner_part(t);
+    const std::vector<RunnerPart> parts = read_runner_parts(t);
     const std::string name = checked_name(t, "name", t.string("name"));
     const std::vector<std::string> between = t.strings("between", 2, 2);
     if (between.size() != 2) return;  // its error is kept
@@ -141,17 +147,22 @@ struct Trains {
     check_alike(t, vehicles[a.vehicle], vehicles[b.vehicle]);
     join(a.vehicle, b.vehicle);
     RailVehicleScene& train = trains[in[a.vehicle].train];
-    std::visit(
-        [&](auto own) {
-          own.name = name;
-          own.a = a.body == kGround ? kGround : a.body + in[a.vehicle].first_body;
-          own.b = b.body == kGround ? kGround : b.body + in[b.vehicle].first_body;
-          place(own, vehicles[a.vehicle].start - train.start,
-                vehicles[b.vehicle].start - train.start);
-          note_element(own, train);
-          add_part(train.runner, own);
-        },
-        part);
+    const auto body_of = [&](const CouplerEnd& end) {
+      return end.body == kGround ? kGround : end.body + in[end.vehicle].first_body;
+    };
+    RunnerParts own_parts(train.runner);
+    for (RunnerPart part : parts) {
+      std::visit(
+          [&](auto& own) {
+            own.name = name + part.suffix;
+            place(own, vehicles[a.vehicle].start - train.start,
+                  vehicles[b.vehicle].start - train.start);
+            note_element(own, train);
+          },
+          part.of);
+      own_parts.add_part(part, {name, body_of(a), body_of(b)}, {part.pressed_by + part.of_presser});
+    }
+    own_parts.find_pressers(t, "name");
   }
 };
 

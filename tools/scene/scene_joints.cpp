@@ -210,7 +210,7 @@ void set_size(const Table& t, SystemScene& scene, SystemForce& force) {
     if (t.has(key))
       t.refuse(key, "E-JOINT-05",
                fmt::format("{} is given beside input; expected one of them", key));
-  force.input = read_input(t, force.moment, scene.inputs);
+  force.input = read_input(t, force.moment ? "moment_n_m" : "force_n", scene.inputs);
 }
 
 void read_force(const Table& t, SystemScene& scene) {

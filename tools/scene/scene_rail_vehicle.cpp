@@ -214,8 +214,9 @@ OuterForce read_force_in_space(const Table& t, const Runner& runner,
 }
 
 /// [[vehicle.brake]] on a wheelset.
-RunnerStop read_brake(const Table& t, const Runner& runner, std::vector<InputScene>& inputs) {
-  RunnerStop brake{};
+RunnerForceElement read_brake(const Table& t, const Runner& runner,
+                              std::vector<InputScene>& inputs) {
+  RunnerForceElement brake{};
   brake.name = checked_name(t, "name", t.string("name"));
   const std::vector<std::string> names = body_names(runner);
   const auto body_of = [&](const char* key, const std::string& name) {
@@ -237,19 +238,20 @@ RunnerStop read_brake(const Table& t, const Runner& runner, std::vector<InputSce
     t.refuse("on", "E-VEHICLE-33",
              "a brake acts between a wheelset and itself; expected another body, or \"ground\"");
   brake.axis = index_of(BodyMotion::pitch);
-  brake.law.stiffness = t.number("stiffness_n_m_per_rad", above_upto(0.0, 1e12), 1e7);
-  brake.law.damping = t.number("damping_n_m_s_per_rad", between(0.0, 1e12), 5e4);
-  brake.law.per_way = 1. / wheelset.radius;
+  brake.law = ElementLaw::slider;
+  brake.stiffness = t.number("stiffness_n_m_per_rad", above_upto(0.0, 1e12), 1e7);
+  brake.damping = t.number("damping_n_m_s_per_rad", between(0.0, 1e12), 5e4);
+  brake.per_way = 1. / wheelset.radius;
   const OuterForce limit = read_body_force(t, 0, true, inputs);
-  brake.limit = limit.table;
-  brake.law.limit.input = limit.input;
-  for (std::size_t i = 1; i < brake.limit.size(); i += 2)
-    if (!(brake.limit[i] >= 0.))
+  brake.value = limit.table;
+  brake.input = limit.input;
+  for (std::size_t i = 1; i < brake.value.size(); i += 2)
+    if (!(brake.value[i] >= 0.))
       t.refuse(
           "table", "E-VEHICLE-31",
           fmt::format("a brake has the moment {:.15g} N m; expected 0 or more: it acts against "
                       "the wheelset's turn",
-                      brake.limit[i]));
+                      brake.value[i]));
   return brake;
 }
 
@@ -283,7 +285,8 @@ RailVehicleScene read_rail_vehicle(const Table& root, const Table& t, const Scen
     if (body.is_wheelset()) v.wheelsets.push_back(v.name + "." + body.name);
   for (const RunnerElement& element : v.runner.elements)
     if (element.kind == RunnerElement::Kind::rod) v.rods.push_back(v.name + "." + element.name);
-  for (const RunnerStop& stop : v.runner.stops) v.bump_stops.push_back(v.name + "." + stop.name);
+  for (const RunnerForceElement& element : v.runner.force_elements)
+    v.force_elements.push_back(v.name + "." + element.name);
   read_rolling(root, scene, v);
   v.start = t.number("start_m", between(-1e6, 1e6), 0.0);
   v.rolls_freely = t.has("drive") && t.choice("drive", {"speed", "force"}) == 1;
@@ -300,10 +303,12 @@ RailVehicleScene read_rail_vehicle(const Table& root, const Table& t, const Scen
   v.speeds = speed.speeds;
   for (const Table& force : t.tables("force"))
     v.forces.push_back(read_force_in_space(force, v.runner, inputs));
-  for (const Table& brake : t.tables("brake")) {
-    v.runner.stops.push_back(read_brake(brake, v.runner, inputs));
-    v.bump_stops.push_back(v.name + "." + v.runner.stops.back().name);
-  }
+  const auto add = [&](RunnerForceElement element) {
+    v.force_elements.push_back(v.name + "." + element.name);
+    v.runner.force_elements.push_back(std::move(element));
+  };
+  for (const Table& brake : t.tables("brake")) add(read_brake(brake, v.runner, inputs));
+  for (const Table& actuator : t.tables("actuator")) add(read_actuator(actuator, v.runner, inputs));
   return v;
 }
 

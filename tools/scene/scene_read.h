@@ -125,13 +125,11 @@ RailVehicleScene read_rail_vehicle(const Table& root, const Table& t, const Scen
                                    std::vector<InputScene>& inputs);
 /// Bodies, wheelsets and elements of a rail vehicle, from its file or from its own table.
 Runner read_runner(const Table& t);
-/// An element or a bump stop by its type, without its name and its bodies.
-using RunnerPart = std::variant<RunnerElement, RunnerStop>;
-RunnerPart read_runner_part(const Table& t);
-void add_part(Runner& runner, const RunnerElement& element);
-void add_part(Runner& runner, const RunnerStop& stop);
 /// The name of kGround where two bodies are named.
 inline constexpr const char* kGroundName = "ground";
+/// [[vehicle.actuator]] between two bodies of a vehicle in space.
+RunnerForceElement read_actuator(const Table& t, const Runner& runner,
+                                 std::vector<InputScene>& inputs);
 /// [[coupler]] between vehicles in space, which are one afterwards, or between one and the ground.
 void read_couplers(const Table& root, std::vector<RailVehicleScene>& vehicles);
 /// [[vehicle.tread]] of a vehicle whose kind and speed are read.
@@ -151,8 +149,9 @@ SpeedScene read_speed(const Table& t, std::optional<double> otherwise);
 void check_path(const Table& t, const Scene& scene, double start, const SpeedScene& speed,
                 const std::optional<double>& stop = std::nullopt);
 std::vector<ExternalWheelScene> read_external_wheels(const Table& root, const Scene& scene);
-/// Reads `input` and `limit_n`, or `limit_n_m` for a moment. @returns the index of the input
-int read_input(const Table& t, bool moment, std::vector<InputScene>& inputs);
+/// Reads `input` and its limit. @param quantity  "force_n", with `limit_n`; "moment_n_m", and so on
+/// @returns the index of the input
+int read_input(const Table& t, std::string_view quantity, std::vector<InputScene>& inputs);
 /// A force by `table`, [[t_s, N or N m], ...], or by an input of each frame.
 OuterForce read_body_force(const Table& t, int direction, bool moment,
                            std::vector<InputScene>& inputs);

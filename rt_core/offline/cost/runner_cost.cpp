@@ -65,13 +65,18 @@ Cost newton_cost(const WheelsCost& of, std::int64_t scalars, std::int64_t n) {
          of.find + of.force + work(6 * n, 3 * n * n);
 }
 
-/// Limits, rates and turns of the brakes of a runner, once.
-Cost brakes_cost(const RunnerModel& runner) {
+/// What a step needs of force elements beside their laws, once: limits, rates, memories.
+Cost elements_cost(const RunnerModel& runner) {
   Cost sum{};
-  for (std::int32_t j = 0; j < runner.stops; ++j)
-    if (is_brake(runner.stop[j]))
-      sum = sum + table_cost(runner.stop[j].limit.points) + table_cost(runner.travel.rows) +
-            work(4 * std::int64_t{runner.size} + 40, 4 * std::int64_t{runner.size} + 20);
+  for (std::int32_t j = 0; j < runner.force_elements; ++j) {
+    const ForceElement& e = runner.force_element[j];
+    constexpr std::int64_t evaluations = 4 * kNewtonSweeps + 2;
+    sum = sum + evaluations * table_cost(e.curve.points);
+    if (e.law != ElementLaw::spring)
+      sum = sum + evaluations * branching(90, 30) + table_cost(e.value.points) +
+            table_cost(runner.travel.rows) +
+            work(4 * std::int64_t{runner.size} + 80, 4 * std::int64_t{runner.size} + 40);
+  }
   return sum;
 }
 
@@ -84,13 +89,13 @@ Cost line_tables_cost(const DesignLine& line) {
   return table_cost(line.curvature.rows) + table_cost(line.cant.rows) +
          table_cost(line.gradient.rows);
 }
-/// The poses of all pairs of a runner's frames, and of its stops and rods.
+/// The poses of all pairs of a runner's frames, and of its force elements and rods.
 Cost poses_cost(const Model& model, const RunnerModel& runner) {
   const DesignLine& line = model.design_line;
   const std::int64_t poses = kMotions * std::int64_t{runner.frames.pairs};
   return runner.frames.pairs *
              (kPose + 3 * line_tables_cost(line) + 2 * std::int64_t{line.pieces} * kLinePiece) +
-         (runner.stops + runner.rods) * work(2 * poses + 2, 2 * poses);
+         (runner.element_coordinates + runner.rods) * work(2 * poses + 2, 2 * poses);
 }
 /// Forces of the design line on a runner in a stage.
 Cost design_line_cost(const Model& model, const RunnerModel& runner) {
@@ -98,7 +103,7 @@ Cost design_line_cost(const Model& model, const RunnerModel& runner) {
   const std::int64_t poses = kMotions * std::int64_t{runner.frames.pairs}, n = runner.size,
                      rods = runner.rods > 0 ? n + constraint_count(runner) : 0;
   const Cost rotation = kRotation + line_tables_cost(model.design_line);
-  const std::int64_t places = (runner.stops > 0 ? 1 : 0) + (runner.rods > 0 ? 1 : 0);
+  const std::int64_t places = (runner.force_elements > 0 ? 2 : 0) + (runner.rods > 0 ? 1 : 0);
   return (4 * std::int64_t{runner.bodies} + 2 * std::int64_t{runner.wheelsets}) * rotation +
          runner.bodies * branching(250, 150) + (2 + places) * poses_cost(model, runner) +
          runner.frames.pairs * branching(2 * 144 + 700, 144 + 300) +
@@ -117,24 +122,25 @@ Cost runners_cost(const Model& model) {
     const Cost grip = places > 0 ? 2 * table_cost(places) : Cost{};
     WheelsCost wheels;
     add_wheels(own, kMotions, wheels);
-    const Cost solved = model.lines > 0 ? Cost{} : newton_cost(wheels, own.stops, meets);
+    const Cost solved = model.lines > 0 ? Cost{} : newton_cost(wheels, own.force_elements, meets);
     const std::int64_t products = model.form == Form::condensed ? 3 : 2;
     const std::int64_t motions = kMotions * std::int64_t{own.wheelsets},
                        held = constraint_count(own);
     sum = sum + work(2 * products * n * n + 20 * n, products * n * n + 12 * n) +
-          work(2 * n * meets + 8 * n * own.stops, n * meets + n + 8 * n * own.stops) +
-          work(held * (2 * n + 2 * motions + (2 * n + 2) * own.stops),
-               held * (2 * n + motions + 2 * n * own.stops)) +
+          work(2 * n * meets + 8 * n * own.element_coordinates,
+               n * meets + n + 8 * n * own.element_coordinates) +
+          work(held * (2 * n + 2 * motions + (2 * n + 2) * own.element_coordinates),
+               held * (2 * n + motions + 2 * n * own.element_coordinates)) +
           solved + 3 * table_cost(own.travel.rows) + forces_cost(own.force, own.forces) +
-          own.wheelsets * (branching(40, 40) + model.signals * kSignal + grip) + brakes_cost(own) +
-          design_line_cost(model, own);
+          own.wheelsets * (branching(40, 40) + model.signals * kSignal + grip) +
+          elements_cost(own) + design_line_cost(model, own);
   }
   return sum;
 }
 
 Cost coupled_runners_cost(const Model& model) {
-  const std::int64_t n = newton_size(model),
-                     scalars = contact_count(model) + model.fixed.count + model.runner_stops;
+  const std::int64_t n = newton_size(model), scalars = contact_count(model) + model.fixed.count +
+                                                       model.runner_force_elements;
   if (model.lines == 0 || n == 0) return {};
   Cost seats{};
   WheelsCost wheels;
@@ -154,10 +160,10 @@ Cost publish_runners_cost(const Model& model) {
   for (std::int32_t i = 0; i < model.runners; ++i) {
     const RunnerModel& own = model.runner[i];
     const std::int64_t n = own.size;
-    const std::int64_t rows = own.rods + own.stops;
+    const std::int64_t rows = own.rods + own.element_coordinates;
     sum = sum + rows * (work(2 * n, 2 * n) + branching(10, 5)) +
           own.wheelsets * table_cost(own.travel.rows) + own.wheelsets * branching(40, 40) +
-          brakes_cost(own) +
+          elements_cost(own) +
           (rows > 0 && is_there(model.design_line) ? poses_cost(model, own) : Cost{});
   }
   return sum;

@@ -40,14 +40,14 @@ Eigen::VectorXd line_forces(const Model& model, const RunnerModel& runner, const
 
 }  // namespace
 
-std::vector<StandingStop> standing_stops(const Model& model, const RunnerModel& runner,
-                                         const State& at) {
+std::vector<StandingElement> standing_elements(const Model& model, const RunnerModel& runner,
+                                               const State& at) {
   std::vector<double> pose(kMostPoses);
   const double* const poses = poses_of(model, runner, along_in(runner, at), pose.data());
-  std::vector<StandingStop> all;
-  all.reserve(static_cast<std::size_t>(runner.stops));
-  for (std::int32_t j = 0; j < runner.stops; ++j)
-    all.push_back(standing_stop(model, runner, j, at, poses));
+  std::vector<StandingElement> all;
+  all.reserve(static_cast<std::size_t>(runner.force_elements));
+  for (std::int32_t j = 0; j < runner.force_elements; ++j)
+    all.push_back(standing_element(model, runner, j, at, poses));
   return all;
 }
 
@@ -76,13 +76,13 @@ double frames_work(const Model& model, const RunnerModel& runner, const State& f
   std::vector<double> pose(2 * std::size_t{kMostPoses});
   const double *const first = poses_of(model, runner, before.where, pose.data()),
                       *const last = poses_of(model, runner, after.where, pose.data() + kMostPoses);
-  const std::vector<StandingStop> stops = standing_stops(model, runner, from),
-                                  later = standing_stops(model, runner, to);
-  for (std::int32_t j = 0; j < runner.stops; ++j) {
-    const auto i = static_cast<std::size_t>(j);
-    sum -= .5 * (stops[i].force.force + later[i].force.force) *
-           (by_poses(runner, runner.frames.stops, j, last) -
-            by_poses(runner, runner.frames.stops, j, first));
+  const std::vector<StandingElement> was = standing_elements(model, runner, from),
+                                     is = standing_elements(model, runner, to);
+  for (std::size_t j = 0; j < was.size(); ++j) {
+    const std::int32_t row = runner.force_element[j].coordinate;
+    sum -= .5 * (was[j].force.force + is[j].force.force) *
+           (by_poses(runner, runner.frames.elements_moved, row, last) -
+            by_poses(runner, runner.frames.elements_moved, row, first));
   }
   for (std::int32_t j = 0; j < runner.rods; ++j)
     sum += .5 *

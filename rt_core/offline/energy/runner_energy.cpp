@@ -73,39 +73,84 @@ Eigen::VectorXd forces_of(const RunnerModel& runner, const StandingRunner& stand
   return force;
 }
 
-/// Forces of the stops over all coordinates.
-Eigen::VectorXd stop_forces(const Model& model, const RunnerModel& runner, const State& at) {
+/// Forces of the force elements over all coordinates.
+Eigen::VectorXd element_forces(const Model& model, const RunnerModel& runner, const State& at) {
   Eigen::VectorXd force = Eigen::VectorXd::Zero(runner.size);
-  const std::vector<StandingStop> stops = standing_stops(model, runner, at);
-  for (std::size_t j = 0; j < stops.size(); ++j)
-    force +=
-        stops[j].force.force *
-        BodiesVector(runner.stop_row + static_cast<std::ptrdiff_t>(j) * runner.size, runner.size);
+  const std::vector<StandingElement> all = standing_elements(model, runner, at);
+  for (std::size_t j = 0; j < all.size(); ++j)
+    force += all[j].force.force *
+             BodiesVector(runner.element_row +
+                              std::ptrdiff_t{runner.size} * runner.force_element[j].coordinate,
+                          runner.size);
   return force;
 }
 
-double stop_energy(const Model& model, const RunnerModel& runner, const State& at) {
-  double sum = 0.;
-  for (const StandingStop& stop : standing_stops(model, runner, at)) sum += stop.force.energy;
+/// Integral of a curve from 0 to a place.
+double area_under(const RisingCurve& curve, double to) {
+  double sum = 0., at = 0.;
+  const double way = to < 0. ? -1. : 1.;
+  const auto go = [&](double next) {
+    // By the trapezoidal rule: the curve is straight in between.
+    sum += .5 * (curve_at(curve, at).value + curve_at(curve, next).value) * (next - at);
+    at = next;
+  };
+  std::vector<double> corners;
+  for (std::int32_t i = 0; i < curve.points; ++i) {
+    const double corner = curve.point[std::ptrdiff_t{3} * i];
+    if (way * corner > 0. && way * corner < way * to) corners.push_back(corner);
+  }
+  if (way < 0.) std::reverse(corners.begin(), corners.end());
+  for (const double corner : corners) go(corner);
+  go(to);
   return sum;
 }
 
-/// Energy that stops take from a vehicle in a step, J: bump stops by numerical loss, brakes by
-/// friction.
-struct StopWork {
-  double loss = 0., friction = 0.;
+/// Energy that a force element stores, J. Friction stores what its spring does.
+double stored_by(const ForceElement& e, const StandingElement& at) {
+  switch (e.law) {
+    case ElementLaw::spring:
+      return area_under(e.curve, at.z);
+    case ElementLaw::damper:
+    case ElementLaw::actuator:
+    case ElementLaw::controlled:
+      return 0.;
+    case ElementLaw::slider:
+      return .5 * e.stiffness * at.from_memory * at.from_memory;
+    case ElementLaw::exponential:
+    case ElementLaw::berg:
+      break;
+  }
+  return .5 * at.force.force * at.force.force / e.stiffness;
+}
+
+double element_energy(const Model& model, const RunnerModel& runner, const State& at) {
+  double sum = 0.;
+  const std::vector<StandingElement> all = standing_elements(model, runner, at);
+  for (std::size_t j = 0; j < all.size(); ++j) sum += stored_by(runner.force_element[j], all[j]);
+  return sum;
+}
+
+/// Work of force elements on a vehicle in a step, J: what springs make by numerical loss, what
+/// dampers and friction take, and what actuators give.
+struct ElementWork {
+  double loss = 0., dissipated = 0., friction = 0., given = 0.;
 };
-StopWork stop_work(const Model& model, const RunnerModel& runner, const State& from,
-                   const State& to) {
-  StopWork sum;
-  const std::vector<StandingStop> before = standing_stops(model, runner, from),
-                                  after = standing_stops(model, runner, to);
+ElementWork element_work(const Model& model, const RunnerModel& runner, const State& from,
+                         const State& to) {
+  ElementWork sum;
+  const std::vector<StandingElement> before = standing_elements(model, runner, from),
+                                     after = standing_elements(model, runner, to);
   for (std::size_t j = 0; j < before.size(); ++j) {
-    const StandingStop &a = before[j], &b = after[j];
+    const StandingElement &a = before[j], &b = after[j];
+    const ForceElement& e = runner.force_element[j];
     const double taken =
-        .5 * (a.force.force + b.force.force) * (b.z - a.z) + (b.force.energy - a.force.energy);
-    if (is_brake(runner.stop[j]))
+        .5 * (a.force.force + b.force.force) * (b.z - a.z) + (stored_by(e, b) - stored_by(e, a));
+    if (is_friction(e.law))
       sum.friction -= taken;
+    else if (e.law == ElementLaw::damper || e.law == ElementLaw::controlled)
+      sum.dissipated -= taken;
+    else if (e.law == ElementLaw::actuator)
+      sum.given += taken;
     else
       sum.loss += taken;
   }
@@ -282,7 +327,7 @@ RunnerEnergy runner_energy(const Model& model, const RunnerModel& runner,
                  beyond = at.v[runner.first + set.first + index_of(BodyMotion::pitch)];
     own.kinetic += set.spin_inertia * roll * (beyond + .5 * roll);
   }
-  return {own.kinetic, own.strain + stop_energy(model, runner, at), contact_energy(standing),
+  return {own.kinetic, own.strain + element_energy(model, runner, at), contact_energy(standing),
           residual_energy(standing)};
 }
 
@@ -301,9 +346,11 @@ RunnerWork runner_work(const Model& model, const RunnerModel& runner, const Stan
   RunnerWork work{suspended_work(model, runner, from, to), contact.drive, contact.creep};
   work.loss += (contact.on_bodies + contact.on_seats) +
                (contact_energy(after) - contact_energy(before)) + contact.creep - contact.drive;
-  const StopWork stops = stop_work(model, runner, from, to);
-  work.loss += stops.loss;
-  work.creep += stops.friction;
+  const ElementWork elements = element_work(model, runner, from, to);
+  work.loss += elements.loss;
+  work.dissipated += elements.dissipated;
+  work.forces += elements.given;
+  work.creep += elements.friction;
   work.drive -= contact.on_seats - contact.on_lines - residual;
   add_spin_work(model, runner, before, from, after, to, work);
   work.drive += frames_work(model, runner, from, to, du);
@@ -316,8 +363,8 @@ RunnerWork runner_work(const Model& model, const RunnerModel& runner, const Stan
 
 double runner_unbalanced(const Model& model, const RunnerModel& runner,
                          const StandingRunner& standing, const State& at, const State& after) {
-  const Eigen::VectorXd force =
-      forces_of(runner, standing) + stop_forces(model, runner, at) + line_forces(model, runner, at);
+  const Eigen::VectorXd force = forces_of(runner, standing) + element_forces(model, runner, at) +
+                                line_forces(model, runner, at);
   return suspended_unbalanced(model, runner, force, at, after);
 }
 

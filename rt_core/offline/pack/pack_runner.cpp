@@ -31,6 +31,8 @@ SuspendedMatrices extended(const RunnerMatrices& m, bool rolls_freely) {
     e.stiffness += own.stiffness * row * row.transpose();
     e.damping(n + i, n + i) = own.damping;
   }
+  for (const RunnerMatrices::Element& element : m.force_elements)
+    if (element.series >= 0) e.damping(n + element.series, n + element.series) = 0.;
   return e;
 }
 
@@ -42,41 +44,56 @@ std::vector<Eigen::Index> motions_of(const RunnerModel& runner) {
   return all;
 }
 
-/// Rows of the stops over all coordinates, [size][stops].
-Eigen::MatrixXd stop_rows(const RunnerMatrices& m, Eigen::Index size) {
-  Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(size, static_cast<Eigen::Index>(m.stops.size()));
-  for (std::size_t i = 0; i < m.stops.size(); ++i)
-    rows.col(static_cast<Eigen::Index>(i)).head(m.mass.size()) = m.stops[i].row;
+/// Rows of the force elements, each with that of its load, over all coordinates, [size][rows].
+Eigen::MatrixXd element_rows(const RunnerMatrices& m, Eigen::Index size) {
+  const Eigen::Index motions = m.mass.size();
+  std::vector<Eigen::VectorXd> all;
+  for (const RunnerMatrices::Element& e : m.force_elements) {
+    Eigen::VectorXd& row = all.emplace_back(Eigen::VectorXd::Zero(size));
+    row.head(motions) = e.row;
+    if (e.series >= 0) row[motions + e.series] = 1.;
+    if (e.law.loaded != 0) all.emplace_back(Eigen::VectorXd::Zero(size)).head(motions) = e.load;
+  }
+  Eigen::MatrixXd rows(size, static_cast<Eigen::Index>(all.size()));
+  for (std::size_t i = 0; i < all.size(); ++i) rows.col(static_cast<Eigen::Index>(i)) = all[i];
   return rows;
 }
 
-/// The part of the inverse for the motions of the wheelsets and the stops, symmetric to the last
-/// bit.
+/// The part of the inverse for the motions of the wheelsets and the force elements, symmetric to
+/// the last bit.
 Eigen::MatrixXd interface_compliance(const RunnerModel& runner, const Eigen::MatrixXd& inverse,
-                                     const Eigen::MatrixXd& stops) {
+                                     const Eigen::MatrixXd& rows) {
   const std::vector<Eigen::Index> motions = motions_of(runner);
   const auto wheels = static_cast<Eigen::Index>(motions.size());
-  Eigen::MatrixXd meets = Eigen::MatrixXd::Zero(inverse.rows(), wheels + stops.cols());
+  Eigen::MatrixXd meets = Eigen::MatrixXd::Zero(inverse.rows(), wheels + rows.cols());
   for (Eigen::Index i = 0; i < wheels; ++i) meets(motions[static_cast<std::size_t>(i)], i) = 1.;
-  meets.rightCols(stops.cols()) = stops;
+  meets.rightCols(rows.cols()) = rows;
   const Eigen::MatrixXd part = meets.transpose() * inverse * meets;
   return .5 * (part + part.transpose());
 }
 
 /// @param keep  takes a table into the model's own memory
 template <typename Keep>
-void add_stops(const RunnerMatrices& m, const Keep& keep, Model& model, RunnerModel& packed) {
-  packed.first_stop = model.runner_stops;
-  for (const RunnerMatrices::Stop& stop : m.stops) {
-    if (packed.stops == kMaxStopsOfRunner)
-      refuse("E-PACK-57",
-             "a rail vehicle has more bump stops than a model takes; expected at most " +
-                 std::to_string(kMaxStopsOfRunner));
-    StopModel& own = packed.stop[packed.stops++] = stop.law;
-    own.limit.points = static_cast<std::int32_t>(stop.limit.size() / 2);
-    own.limit.table = stop.limit.empty() ? nullptr : keep(stop.limit);
-    ++model.runner_stops;
+void add_elements(const RunnerMatrices& m, const Keep& keep, Model& model, RunnerModel& packed) {
+  if (m.force_elements.size() > std::size_t{kMaxForceElements})
+    refuse("E-PACK-57", "a rail vehicle has " + std::to_string(m.force_elements.size()) +
+                            " elements that are not linear, brakes among them; expected at most " +
+                            std::to_string(kMaxForceElements));
+  packed.first_force_element = model.runner_force_elements;
+  packed.first_element_coordinate = model.element_coordinates;
+  for (const RunnerMatrices::Element& e : m.force_elements) {
+    ForceElement& own = packed.force_element[packed.force_elements++] = e.law;
+    own.coordinate = packed.element_coordinates;
+    own.memory = model.element_memory;
+    own.value.points = static_cast<std::int32_t>(e.value.size() / 2);
+    own.value.table = e.value.empty() ? nullptr : keep(e.value);
+    own.curve.points = static_cast<std::int32_t>(e.curve.size() / 3);
+    own.curve.point = e.curve.empty() ? nullptr : keep(e.curve);
+    packed.element_coordinates += 1 + own.loaded;
+    model.element_memory += memory_of(own.law);
   }
+  model.runner_force_elements += packed.force_elements;
+  model.element_coordinates += packed.element_coordinates;
 }
 
 void add_rods(const RunnerMatrices& m, Model& model, RunnerModel& packed) {
@@ -155,7 +172,7 @@ void PackedModel::add_runner(const Track& track, const RailVehicle& vehicle) {
   RunnerModel& packed = model_.runner[model_.runners];
   packed.bodies = static_cast<std::int32_t>(vehicle.runner.bodies.size());
   add_wheelsets(vehicle.runner, model_, packed);
-  add_stops(
+  add_elements(
       matrices, [this](const std::vector<double>& table) { return keep(table); }, model_, packed);
   add_rods(matrices, model_, packed);
   packed.start = model_.lines > 0 ? model_.endless.origin + vehicle.start : vehicle.start;
@@ -170,11 +187,19 @@ void PackedModel::add_runner(const Track& track, const RailVehicle& vehicle) {
   if (vehicle.rolls_freely)
     packed.by_way = keep(column_by_column(stiffness_by_way(m.stiffness, packed.bodies)));
   const SuspendedResponse step = add_suspended(m, vehicle.forces, packed);
-  const Eigen::MatrixXd stops = stop_rows(matrices, n);
-  const Eigen::MatrixXd compliance =
-      model_.scheme.theta * interface_compliance(packed, step.inverse, stops);
-  packed.stop_row = keep(column_by_column(stops));
-  packed.stop_moved = keep(column_by_column(step.inverse * stops));
+  const Eigen::MatrixXd rows = element_rows(matrices, n);
+  Eigen::MatrixXd compliance =
+      model_.scheme.theta * interface_compliance(packed, step.inverse, rows);
+  std::vector<double> own(static_cast<std::size_t>(packed.element_coordinates));
+  for (std::int32_t j = 0; j < packed.force_elements; ++j) {
+    const ForceElement& e = packed.force_element[j];
+    if (!has_corners(e.law)) continue;
+    double& met = compliance.diagonal()[kMotions * packed.wheelsets + e.coordinate];
+    std::swap(own[static_cast<std::size_t>(e.coordinate)], met);
+  }
+  packed.element_compliance = keep(own);
+  packed.element_row = keep(column_by_column(rows));
+  packed.element_moved = keep(column_by_column(step.inverse * rows));
   packed.rod_row = keep(column_by_column(m.held.rightCols(packed.rods)));
   Eigen::MatrixXd reaction = Eigen::MatrixXd::Zero(constraint_count(packed), n);
   reaction.bottomRows(step.reaction.rows()) = step.reaction;
@@ -208,7 +233,7 @@ void PackedModel::add_design_line(const Traffic& traffic) {
 void PackedModel::add_frames(const RailVehicle& vehicle, const RunnerMatrices& m,
                              const SuspendedResponse& step, RunnerModel& packed) {
   const FrameMatrices f = frame_matrices(vehicle.runner);
-  const Eigen::Index n = packed.size, motions = m.mass.size(), poses = f.stops.cols();
+  const Eigen::Index n = packed.size, motions = m.mass.size(), poses = f.elements_moved.cols();
   // Dampers in series have coordinates of their own, see extended().
   Eigen::MatrixXd series = Eigen::MatrixXd::Zero(n, poses);
   for (Eigen::Index i = 0; i < f.series.rows(); ++i) {
@@ -230,7 +255,7 @@ void PackedModel::add_frames(const RailVehicle& vehicle, const RunnerMatrices& m
   frames.stiffness = keep(f.stiffness);
   frames.preload = keep(f.preload);
   if (f.series.rows() > 0) frames.series = keep(column_by_column(series));
-  frames.stops = keep(column_by_column(f.stops.transpose()));
+  frames.elements_moved = keep(column_by_column(f.elements_moved.transpose()));
   if (packed.rods == 0) return;
   const Eigen::Index held = step.held.rows();
   const Eigen::MatrixXd shorter = -f.rods;  // what the bodies' motions have to make up for
@@ -248,7 +273,8 @@ void PackedModel::refuse_many_coordinates() const {
          "the contacts, one-sided springs and wheelsets of rail vehicles on one track have " +
              std::to_string(newton_size(model_)) + " coordinates; expected at most " +
              std::to_string(kMostNewton) +
-             ": one of each contact, spring and bump stop, 12 of each wheelset of a rail vehicle");
+             ": one of each contact, spring and element that is not linear, two of friction under "
+             "a load, 12 of each wheelset of a rail vehicle");
 }
 
 }  // namespace railstep

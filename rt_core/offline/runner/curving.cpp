@@ -24,7 +24,7 @@ Runner with_axle_boxes(Runner runner) {
 }
 using Pair = std::array<int, 2>;
 
-/// The pairs of bodies that elements and stops join, each once.
+/// The pairs of bodies that elements join, each once.
 std::vector<Pair> pairs_of(const Runner& runner) {
   std::vector<Pair> pairs;
   const auto add = [&](int a, int b) {
@@ -33,8 +33,8 @@ std::vector<Pair> pairs_of(const Runner& runner) {
       pairs.push_back(pair);
   };
   for (const RunnerElement& e : runner.elements) add(e.a, e.b);
-  for (const RunnerStop& s : runner.stops)
-    if (!is_brake(s.law)) add(s.a, s.b);
+  for (const RunnerForceElement& e : runner.force_elements)
+    if (!e.is_brake()) add(e.a, e.b);
   return pairs;
 }
 
@@ -43,7 +43,7 @@ Runner with_elements_of(Runner runner, const Pair& pair) {
   std::erase_if(runner.elements, [&](const RunnerElement& e) {
     return std::min(e.a, e.b) != pair[0] || std::max(e.a, e.b) != pair[1];
   });
-  runner.stops.clear();
+  runner.force_elements.clear();
   return runner;
 }
 
@@ -87,8 +87,9 @@ FrameElement frame_element(const Runner& runner, const RunnerElement& e) {
   for (std::size_t d = 0; along && d < 3; ++d)
     made.along_line = std::hypot(made.along_line, e.point_b[d] - e.point_a[d]);
   for (std::size_t k = 0; k < 6; ++k) {
-    made.stiffness[k] = e.kind == RunnerElement::Kind::rod ? 0. : e.stiffness[k];
-    made.damping[k] = e.kind == RunnerElement::Kind::rod || e.series[k] > 0. ? 0. : e.damping[k];
+    const bool is_rod = e.kind == RunnerElement::Kind::rod;
+    made.stiffness[k] = is_rod || e.presses_only ? 0. : e.stiffness[k];
+    made.damping[k] = is_rod || e.series[k] > 0. ? 0. : e.damping[k];
     made.preload[k] = swapped && !along ? -e.preload[k] : e.preload[k];
   }
   return made;
@@ -140,13 +141,18 @@ FrameMatrices frame_matrices(const Runner& runner) {
   }
   const auto poses = kMotions * static_cast<Index>(pairs.size());
   f.series = MatrixXd::Zero(static_cast<Index>(all.series.size()), poses);
-  f.stops = MatrixXd::Zero(static_cast<Index>(all.stops.size()), poses);
   f.rods = MatrixXd::Zero(all.rods.cols(), poses);
   for (std::size_t i = 0; i < all.series.size(); ++i)
     f.series.row(static_cast<Index>(i)) = by_poses(all.series[i].row, runner, pairs);
-  for (std::size_t i = 0; i < all.stops.size(); ++i)
-    if (!is_brake(all.stops[i].law))
-      f.stops.row(static_cast<Index>(i)) = by_poses(all.stops[i].row, runner, pairs);
+  std::vector<Eigen::RowVectorXd> moved;
+  for (const RunnerMatrices::Element& e : all.force_elements) {
+    moved.push_back(is_brake(e.law) ? Eigen::RowVectorXd::Zero(poses)
+                                    : by_poses(e.row, runner, pairs));
+    if (e.law.loaded != 0) moved.push_back(by_poses(e.load, runner, pairs));
+  }
+  f.elements_moved.resize(static_cast<Index>(moved.size()), poses);
+  for (std::size_t i = 0; i < moved.size(); ++i)
+    f.elements_moved.row(static_cast<Index>(i)) = moved[i];
   for (Index i = 0; i < all.rods.cols(); ++i)
     f.rods.row(i) = by_poses(all.rods.col(i), runner, pairs);
   return f;
@@ -181,7 +187,7 @@ RunnerMatrices matrices_on(const DesignLine& line, const OnLine& at, const Runne
   frames.elements = static_cast<std::int32_t>(f.elements.size());
   frames.element = f.elements.data();
   frames.preload = f.preload.data();
-  VectorXd pose = VectorXd::Zero(f.stops.cols());
+  VectorXd pose = VectorXd::Zero(f.elements_moved.cols());
   find_poses(line, at, frames, pose.data());
   add_pair_forces(line, at, frames, u.data(), m.rest.data());
   add_frame_forces(line, at, {bodies, centre.data(), m.mass.data(), gravity}, 0., m.rest.data());
@@ -194,8 +200,10 @@ RunnerMatrices matrices_on(const DesignLine& line, const OnLine& at, const Runne
   }
   for (std::size_t i = 0; i < m.series.size(); ++i)
     m.series[i].moved = f.series.row(static_cast<Index>(i)).dot(pose);
-  for (std::size_t i = 0; i < m.stops.size(); ++i)
-    m.stops[i].moved = f.stops.row(static_cast<Index>(i)).dot(pose);
+  for (Index row = 0; RunnerMatrices::Element & e : m.force_elements) {
+    e.moved = f.elements_moved.row(row++).dot(pose);
+    if (e.law.loaded != 0) e.load_moved = f.elements_moved.row(row++).dot(pose);
+  }
   m.rods_moved = f.rods * pose;
   return m;
 }

@@ -11,7 +11,8 @@ struct FrameMatrices {
   std::vector<FramePair> pairs;
   std::vector<FrameElement> elements;
   std::vector<double> stiffness, preload;
-  Eigen::MatrixXd series, stops, rods;  // [of each][6 pairs] displacements of their rows
+  /// [of each][6 pairs] displacements of their rows; of force elements with those of their loads.
+  Eigen::MatrixXd series, elements_moved, rods;
 };
 /// An element to the ground goes along with its body, and a brake is not moved.
 FrameMatrices frame_matrices(const Runner& runner);
@@ -24,8 +25,8 @@ double reach_of(const Runner& runner);
 std::vector<double> centres_of(const Runner& runner);
 
 /// The matrices of a vehicle on a design line, as it stands there: with the forces of the frames
-/// and of what is between them at rest, and with stops, dampers in series and rods as the poses
-/// move them.
+/// and of what is between them at rest, and with force elements, dampers in series and rods as the
+/// poses move them.
 /// @param u  [n] motions, on which the forces depend in second order
 RunnerMatrices matrices_on(const DesignLine& line, const OnLine& at, const Runner& runner,
                            const RunnerMatrices& matrices, double gravity,

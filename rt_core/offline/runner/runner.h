@@ -38,25 +38,42 @@ struct RunnerElement {
   std::array<double, 6> damping{};         // N s/m and N m s/rad
   std::array<double, 6> series{};          // of a spring in series with the damper; 0: it is rigid
   std::array<double, 6> preload{};  // force on `a` at rest, N and N m; of a line or rod its tension
+  /// Its spring along z cannot pull, and presses once `clearance` is used up, m. A force element
+  /// with its number has it in place of the linear stiffness.
+  bool presses_only = false;
+  double clearance = 0.;
 };
 
-/// A bump stop between two bodies: a spring along an axis of the track that presses once body `a`
-/// has moved against `b` by more than a gap. Or the brake of wheelset `a`, whose moment acts
-/// against `b`, with a limit by a table or an input.
-struct RunnerStop {
+/// An element that is not linear in its one displacement, that of body `a` against body `b`: along
+/// an axis of the track at a point, about it, or the elongation of the line between two points.
+struct RunnerForceElement {
+  enum class Along { axis, about_axis, line };
   std::string name;
-  int a, b;                        // bodies; one of them may be kGround
-  std::array<double, 3> point;     // at rest, as RunnerBody::centre
-  int axis;                        // 0 x, 1 y, 2 z; of a brake BodyMotion::pitch
-  StopModel law;                   // its limit has no table
-  std::vector<double> limit = {};  // of a brake: t (s), N m, t, N m, ...
+  int a, b;  // bodies; one of them may be kGround
+  Along along = Along::axis;
+  std::array<double, 3> point_a{}, point_b{};  // at rest, as RunnerBody::centre; of an axis alike
+  int axis = 0;                                // 0 x, 1 y, 2 z
+  ElementLaw law = ElementLaw::spring;
+  /// [n] place, value: m and N of a spring, m/s and N of a damper, rising; beyond its ends it goes
+  /// on with `slope_before` and `slope_behind`.
+  std::vector<double> curve = {};
+  double slope_before = 0., slope_behind = 0.;
+  double series = 0.;  // N/m, of a spring in series with a damper; 0: it is rigid
+  double stiffness = 0., damping = 0., per_way = 0.;  // as of ForceElement
+  /// t (s), value, t, value, ... of what ForceElement::value is; none: that of the input.
+  std::vector<double> value = {};
+  int input = -1;
+  /// Of friction the element, among the runner's linear ones, that presses its faces together: the
+  /// limit is then a coefficient. Of a spring without a curve the one that presses only. -1: none.
+  int pressed_by = -1;
+  [[nodiscard]] bool is_brake() const { return per_way > 0.; }
 };
 
 /// A rail vehicle: rigid bodies in space on a suspension, with wheels on both rails.
 struct Runner {
   std::vector<RunnerBody> bodies;
   std::vector<RunnerElement> elements;
-  std::vector<RunnerStop> stops = {};
+  std::vector<RunnerForceElement> force_elements = {};
 };
 
 }  // namespace railstep

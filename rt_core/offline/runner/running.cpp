@@ -5,6 +5,7 @@
 
 #include "offline/math/hertz_depth.h"
 #include "offline/math/refuse.h"
+#include "offline/runner/element_matrices.h"
 #include "offline/runner/rolling_slopes.h"
 
 namespace railstep {
@@ -206,7 +207,7 @@ SteadyRunning steady_running(const Runner& runner, const RunnerMatrices& m,
   // Contacts that press give Newton's method its way back.
   for (int i = 0; i < 20 && !touches(s); ++i) sink_wheelsets(runner, 2e-4, s.displacement);
   const auto left_at = [&](const SteadyRunning& at, const VectorXd& force) -> VectorXd {
-    return m.rest + force + stop_forces(m, at.displacement) - m.stiffness * at.displacement -
+    return m.rest + force + element_forces(m, at.displacement) - m.stiffness * at.displacement -
            m.damping * at.rate - m.rods * at.tension;
   };
   roll_wheelsets(runner, contact, speed, rails, s);
@@ -352,8 +353,9 @@ LinearRunning linear_running(const Runner& runner, const RunnerMatrices& m,
                              const SteadyRunning& steady, const RunningOn& on) {
   const Contacts c =
       contacts_at(runner, contact, speed, steady.displacement, steady.rate, on.rails);
-  LinearRunning linear{m.mass, m.damping - c.by_rate,
-                       stiffness_at(m, steady.displacement) - c.by_displacement, m.series, m.rods};
+  LinearRunning linear{m.mass, damping_at_rest(m) - c.by_rate,
+                       sticking_stiffness_at(m, steady.displacement) - c.by_displacement, m.series,
+                       m.rods};
   for (std::size_t b = 0; b < runner.bodies.size(); ++b) {
     const RunnerBody& body = runner.bodies[b];
     if (!body.is_wheelset()) continue;

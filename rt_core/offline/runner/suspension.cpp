@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "offline/math/refuse.h"
+#include "offline/runner/element_matrices.h"
 
 namespace railstep {
 
@@ -153,13 +154,7 @@ void check(const Runner& runner) {
       refuse("E-SUSPENSION-04",
              "body " + b.name + " has a mass or an inertia that is not positive; expected above 0");
   for (const RunnerElement& e : runner.elements) check_element(runner, e);
-  for (const RunnerStop& s : runner.stops) {
-    check_bodies(runner, s.name, s.a, s.b);
-    if (!(s.law.below >= 0.) || !(s.law.above >= 0.) || !(s.law.stiffness > 0.))
-      refuse("E-SUSPENSION-06", "bump stop " + s.name +
-                                    " has a gap below 0, or a stiffness that is not above 0; "
-                                    "expected gaps of 0 or more and a stiffness above 0");
-  }
+  for (const RunnerForceElement& e : runner.force_elements) check_bodies(runner, e.name, e.a, e.b);
 }
 
 VectorXd weights(const Runner& runner, double gravity) {
@@ -210,18 +205,6 @@ std::pair<VectorXd, VectorXd> deflection_under(const MatrixXd& K, const MatrixXd
   return {solved.head(n), scale * solved.tail(held)};
 }
 
-VectorXd stop_row(const Runner& runner, const RunnerStop& s, Eigen::Index n) {
-  if (!is_brake(s.law))
-    return (displacement(end_of(runner, s.a, s.point), n) -
-            displacement(end_of(runner, s.b, s.point), n))
-        .row(s.axis);
-  // Suspensions do not turn wheelsets, brakes do.
-  VectorXd row = VectorXd::Zero(n);
-  row[kMotions * s.a + s.axis] = 1.;
-  if (s.b != kGround) row[kMotions * s.b + s.axis] = -1.;
-  return row;
-}
-
 }  // namespace
 
 RunnerMatrices runner_matrices(const Runner& runner, double gravity) {
@@ -247,7 +230,7 @@ RunnerMatrices runner_matrices(const Runner& runner, double gravity) {
     }
     for (const Spring& s : springs(runner, e)) {
       const double damping = e.damping[s.entry], series = e.series[s.entry];
-      m.stiffness += e.stiffness[s.entry] * s.row * s.row.transpose();
+      if (!e.presses_only) m.stiffness += e.stiffness[s.entry] * s.row * s.row.transpose();
       if (series == 0.)
         m.damping += damping * s.row * s.row.transpose();
       else if (damping > 0.)
@@ -257,8 +240,8 @@ RunnerMatrices runner_matrices(const Runner& runner, double gravity) {
     m.stiffness += geometric_stiffness(runner, e);
     m.rest += preload(runner, e);
   }
-  for (const RunnerStop& s : runner.stops)
-    m.stops.push_back({stop_row(runner, s, n), s.law, s.limit});
+  for (const RunnerForceElement& e : runner.force_elements)
+    m.force_elements.push_back(made_element(runner, e, m));
   return m;
 }
 
@@ -266,21 +249,13 @@ VectorXd elongation(const Runner& runner, const RunnerElement& element) {
   return springs(runner, element).front().row;
 }
 
-VectorXd stop_forces(const RunnerMatrices& m, const VectorXd& u) {
-  VectorXd sum = VectorXd::Zero(u.size());
-  for (const RunnerMatrices::Stop& stop : m.stops)
-    if (!is_brake(stop.law))
-      sum += stop_force(stop.law, stop.row.dot(u) + stop.moved).force * stop.row;
-  return sum;
-}
-
-MatrixXd stiffness_at(const RunnerMatrices& m, const VectorXd& u) {
-  MatrixXd K = m.stiffness;
-  for (const RunnerMatrices::Stop& stop : m.stops)
-    if (!is_brake(stop.law))
-      K -= stop_force(stop.law, stop.row.dot(u) + stop.moved).slope * stop.row *
-           stop.row.transpose();
-  return K;
+VectorXd deflection(const Runner& runner, int a, int b, const std::array<double, 3>& point,
+                    BodyMotion along) {
+  RunnerElement e{};
+  e.a = a;
+  e.b = b;
+  e.point_a = e.point_b = point;
+  return springs(runner, e)[static_cast<std::size_t>(index_of(along))].row;
 }
 
 void balance_preloads(Runner& runner, double gravity) {
@@ -297,7 +272,7 @@ void balance_preloads(Runner& runner, double gravity) {
       open_rods.push_back(&e);
       rods.conservativeResize(Eigen::NoChange, rods.cols() + 1);
       rods.rightCols(1) = elongation(runner, e);
-    } else {
+    } else if (!(e.clearance > 0.)) {
       open.push_back(&e);
       for (const Spring& s : springs(runner, e))
         K += e.stiffness[s.entry] * s.row * s.row.transpose();

@@ -13,28 +13,27 @@ struct RunnerMatrices {
   /// A damper in series with a spring: force' = stiffness (row q' - force / damping).
   struct Series {
     Eigen::VectorXd row;        // [n]
-    double stiffness, damping;  // N/m, N s/m
+    double stiffness, damping;  // N/m, N s/m; of a damper that is not linear its slope at rest
     double moved = 0.;          // by the poses of frames on a design line, m
   };
   Eigen::VectorXd mass;                // [n] kg, kg m2
   Eigen::MatrixXd damping, stiffness;  // [n][n] symmetric
   Eigen::VectorXd rest;                // [n] preloads less weights, N and N m
   std::vector<Series> series;
-  struct Stop {
-    Eigen::VectorXd row;  // [n]
-    StopModel law;
-    std::vector<double> limit;  // RunnerStop::limit
-    double moved = 0.;          // as of Series
+  /// An element that is not linear, with its force at rest and its poses as of Series.
+  struct Element {
+    Eigen::VectorXd row;        // [n]; 0 of a damper in series with a spring
+    ForceElement law;           // without tables
+    std::vector<double> curve;  // [points][3], see RisingCurve
+    std::vector<double> value;  // RunnerForceElement::value
+    int series = -1;            // the number of the spring that it is in series with
+    Eigen::VectorXd load = {};  // [n] displacement of its load
+    double moved = 0., load_moved = 0.;
   };
-  std::vector<Stop> stops;  // at rest brakes have no moment
-  Eigen::MatrixXd rods;     // [n][rods] elongation of each; with `rods_moved` it stays 0
+  std::vector<Element> force_elements;
+  Eigen::MatrixXd rods;  // [n][rods] elongation of each; with `rods_moved` it stays 0
   Eigen::VectorXd rods_moved = Eigen::VectorXd::Zero(rods.cols());  // as of Series
 };
-
-/// Forces of the bump stops over the coordinates at a displacement.
-Eigen::VectorXd stop_forces(const RunnerMatrices& matrices, const Eigen::VectorXd& u);
-/// The stiffness with that of the stops that press at a displacement.
-Eigen::MatrixXd stiffness_at(const RunnerMatrices& matrices, const Eigen::VectorXd& u);
 
 /// The stiffness is the second derivative of the elements' energy and includes what their preloads
 /// make of it: the geometric stiffness. With s1 and s2 the parts of first and second order of a
@@ -47,6 +46,10 @@ RunnerMatrices runner_matrices(const Runner& runner, double gravity);
 
 /// Elongation of an element along a line over the coordinates of its vehicle, [n].
 Eigen::VectorXd elongation(const Runner& runner, const RunnerElement& element);
+/// Displacement of body `a` against body `b` along or about an axis at a point, [n]. The spin of a
+/// wheelset does not count: its axle boxes do not turn with it.
+Eigen::VectorXd deflection(const Runner& runner, int a, int b, const std::array<double, 3>& point,
+                           BodyMotion along);
 
 /// Gives the elements whose preload is 0 in all entries the force that they carry where the vehicle
 /// stands under its weight with its wheelsets held. Springs are linear, without geometric

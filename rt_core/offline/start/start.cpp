@@ -15,7 +15,7 @@
 #include "online/contact/wheel.h"
 #include "online/model/progress.h"
 #include "online/runner/body_force.h"
-#include "online/runner/runner_contact.h"
+#include "online/runner/force_elements.h"
 #include "online/step/step.h"
 #include "online/track/closing.h"
 #include "online/track/moving_load.h"
@@ -302,6 +302,22 @@ void release(const RunnerModel& runner, double held, State& state) {
     set_acceleration(runner.wheelset[i].first + spin, 1. / runner.wheelset[i].radius);
 }
 
+/// Friction has come to its displacement in one way from rest; brakes have not slid.
+void start_elements(const Model& model, const RunnerModel& runner, State& state) {
+  std::vector<double> pose(kMostPoses);
+  const double* const poses = poses_of(model, runner, along_in(runner, state), pose.data());
+  for (std::int32_t j = 0; j < runner.force_elements; ++j) {
+    const ForceElement& e = runner.force_element[j];
+    double* const memory = state.element_memory + e.memory;
+    std::fill_n(memory, memory_of(e.law), 0.);
+    const StandingElement at = standing_element(model, runner, j, state, poses);
+    if (is_brake(e))
+      memory[0] = at.z;
+    else
+      keep_element(e, at.step, at.from_memory, at.load, memory);
+  }
+}
+
 /// Puts rail vehicles into a state. The rates are those of steady running, and those by which rails
 /// lead them on.
 void put_runners(const PackedModel& packed, const SettledRunners& now, const SettledRunners& before,
@@ -318,10 +334,7 @@ void put_runners(const PackedModel& packed, const SettledRunners& now, const Set
     const Eigen::VectorXd accelerated =
         constraint_forces_of_acceleration(model.runner[r], .5 * model.scheme.dt);
     reaction[0] = now.steady[r].resistance + accelerated[0];
-    for (std::int32_t j = 0; j < model.runner[r].stops; ++j)
-      if (is_brake(model.runner[r].stop[j]))
-        state.anchor[model.runner[r].first_stop + j] =
-            standing_stop(model, model.runner[r], j, state, nullptr).z;
+    start_elements(model, model.runner[r], state);
     if (model.runner[r].rolls_freely != 0) {
       start_rolling(model.runner[r], state);
       release(model.runner[r], now.steady[r].resistance, state);

@@ -4,6 +4,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 
+#include "offline/runner/element_matrices.h"
 #include "online/contact/wheel_seat.h"
 #include "online/model/progress.h"
 #include "online/runner/runner_contact.h"
@@ -100,7 +101,7 @@ void follow_alignment(const RunnerMatrices& m, const Model& model, const RunnerM
   }
   // Bump stops may begin to press, or let go.
   constexpr int kIterations = 20;
-  const Eigen::VectorXd before = steady.displacement, held = stop_forces(m, before);
+  const Eigen::VectorXd before = steady.displacement, held = element_forces(m, before);
   Eigen::VectorXd moved = given, more = Eigen::VectorXd::Zero(m.rods.cols());
   const Eigen::Index rods = m.rods.cols();
   for (int iteration = 0; iteration < kIterations; ++iteration) {
@@ -109,7 +110,7 @@ void follow_alignment(const RunnerMatrices& m, const Model& model, const RunnerM
     K.topRightCorner(n, rods) = m.rods;
     K.bottomLeftCorner(rods, n) = m.rods.transpose();
     Eigen::VectorXd force(n + rods);
-    force.head(n) = stop_forces(m, before + moved) - held - m.stiffness * moved - m.rods * more;
+    force.head(n) = element_forces(m, before + moved) - held - m.stiffness * moved - m.rods * more;
     force.tail(rods) = -m.rods.transpose() * moved;
     for (Eigen::Index k = 0; k < n; ++k) {
       if (!is_given[static_cast<std::size_t>(k)]) continue;
@@ -121,7 +122,7 @@ void follow_alignment(const RunnerMatrices& m, const Model& model, const RunnerM
     const Eigen::VectorXd solved = K.fullPivLu().solve(force), step = solved.head(n);
     moved += step;
     more += solved.tail(rods);
-    if (m.stops.empty() || step.cwiseAbs().maxCoeff() < 1e-14) break;
+    if (m.force_elements.empty() || step.cwiseAbs().maxCoeff() < 1e-14) break;
   }
   steady.displacement += moved;
   steady.tension += more;

@@ -56,25 +56,30 @@ double moved_before(const Model& model, const State& s, const Coupling& c, int r
   return sum;
 }
 
-/// The first stop among the coordinates of Newton's method, behind all wheelsets.
-int first_stop(const Model& model, int scalars) noexcept {
+/// The first displacement of force elements among the coordinates of Newton's method, behind all
+/// wheelsets.
+int first_of_elements(const Model& model, int scalars) noexcept {
   return scalars + kOfWheelset * model.runner_wheelsets;
 }
 
 /// The row of the track of a coordinate of Newton's method that is one, or the port of a scalar.
-/// -1: a motion of a wheelset, or a stop.
+/// -1: a motion of a wheelset, or of a force element.
 int port_of_coordinate(const Model& model, const Coupling& c, int scalars, int at) noexcept {
   if (at < scalars) return port_of(c, at);
-  if (at >= first_stop(model, scalars)) return -1;
+  if (at >= first_of_elements(model, scalars)) return -1;
   const int set = (at - scalars) / kOfWheelset, k = (at - scalars) % kOfWheelset;
   return k < kMotions ? -1 : c.contacts + 2 * kWheelSeatRows * set + (k - kMotions);
 }
 
-/// A stop by its number among those of all runners.
-const StopModel& stop_of(const Model& model, int stop) noexcept {
+/// The runner of a force element by its number among those of all runners.
+const RunnerModel& runner_of_element(const Model& model, int element) noexcept {
   std::int32_t r = 0;
-  while (r + 1 < model.runners && stop >= model.runner[r + 1].first_stop) ++r;
-  return model.runner[r].stop[stop - model.runner[r].first_stop];
+  while (r + 1 < model.runners && element >= model.runner[r + 1].first_force_element) ++r;
+  return model.runner[r];
+}
+const ForceElement& element_of(const Model& model, int element) noexcept {
+  const RunnerModel& runner = runner_of_element(model, element);
+  return runner.force_element[element - runner.first_force_element];
 }
 
 void fill_compliance(const Model& model, const Coupling& c, int scalars, double* Y) noexcept {
@@ -94,9 +99,10 @@ void fill_compliance(const Model& model, const Coupling& c, int scalars, double*
     const int motions = kMotions * runner.wheelsets, meets = interface_size(runner);
     int at[kMostInterfaces];
     for (int k = 0; k < meets; ++k)
-      at[k] = k < motions
-                  ? scalars + kOfWheelset * (runner.first_wheelset + k / kMotions) + k % kMotions
-                  : first_stop(model, scalars) + runner.first_stop + (k - motions);
+      at[k] =
+          k < motions
+              ? scalars + kOfWheelset * (runner.first_wheelset + k / kMotions) + k % kMotions
+              : first_of_elements(model, scalars) + runner.first_element_coordinate + (k - motions);
     for (int i = 0; i < meets; ++i)
       for (int j = 0; j < meets; ++j) Y[at[i] * n + at[j]] = runner.compliance[i * meets + j];
   }
@@ -199,8 +205,8 @@ void couple_runners(const Model& model, const Stage& stage, State& s, Workspace&
     const RunnerStage at = stage_of(model, runner, stage);
     double* const u = w.solved + runner.first;
     move_freely(at, s, w, u);
-    const int stop = first_stop(model, all.scalars) + runner.first_stop;
-    find_stops(at, s, w, u, all.z_free + stop, all.motion + stop, w.brake + runner.first_stop);
+    const int own = first_of_elements(model, all.scalars) + runner.first_element_coordinate;
+    find_elements(at, s, w, u, all.z_free + own, all.motion + own);
   }
   for_each_wheelset(model, [&](const RunnerModel& runner, int i, std::int32_t set) noexcept {
     const RunnerStage at = stage_of(model, runner, stage);
@@ -242,14 +248,30 @@ NewtonResult solve_coupled_runners(const Model& model, const Workspace& w, Coupl
   }
   for (int i = 0; i < sets; ++i)
     block[all.scalars + i] = {all.scalars + kOfWheelset * i, kOfWheelset, all.law[i].rank()};
-  for (int i = 0; i < model.runner_stops; ++i)
-    block[all.scalars + sets + i] = {first_stop(model, all.scalars) + i, 1, 1};
+  for (int i = 0; i < model.runner_force_elements; ++i)
+    block[all.scalars + sets + i] = element_block(
+        element_of(model, i), first_of_elements(model, all.scalars) +
+                                  runner_of_element(model, i).first_element_coordinate);
+  double diagonal[kMostNewton];
+  for (int i = 0; i < n; ++i) diagonal[i] = w.newton[std::ptrdiff_t{n} * i + i];
+  for (std::int32_t r = 0; r < model.runners; ++r) {
+    const RunnerModel& runner = model.runner[r];
+    double* const own =
+        diagonal + first_of_elements(model, all.scalars) + runner.first_element_coordinate;
+    for (std::int32_t i = 0; i < runner.element_coordinates; ++i)
+      own[i] += runner.element_compliance[i];
+  }
   const NewtonResult met = solve_laws(
-      {n, all.scalars + sets + model.runner_stops, w.newton, block, all.z_free,
-       w.newton + std::ptrdiff_t{n} * n, kRunnerTolerance},
+      {n, all.scalars + sets + model.runner_force_elements, w.newton, block, all.z_free,
+       w.newton + std::ptrdiff_t{n} * n, kRunnerTolerance,
+       model.runner_force_elements > 0 ? diagonal : nullptr},
       [&](int b, const double* at, double* force, const LawSlopes* slopes, double* steep) noexcept {
-        const int stop = b - all.scalars - sets;
-        if (stop >= 0) return stop_law(stop_of(model, stop), w.brake + stop, *at, force, slopes);
+        const int element = b - all.scalars - sets;
+        if (element >= 0) {
+          const RunnerModel& runner = runner_of_element(model, element);
+          return evaluate_element(runner, element - runner.first_force_element, w, at, force,
+                                  slopes);
+        }
         if (b >= all.scalars) return all.law[b - all.scalars].evaluate(at, force, slopes, steep);
         const PortForce own = port_force(c.law[b], *at);
         *force = -own.force;
@@ -308,12 +330,11 @@ Status move_coupled_runners(const Model& model, const Coupling& c, const Coupled
       met = met | events_of(all.law[set]);
       if (!is_on_rail(c, wheel_seat_row(model, set, 0))) met = met | Status::off_rail;
     }
-    for (int j = 0; j < runner.stops; ++j)
-      force[kMotions * runner.wheelsets + j] =
-          all.force[first_stop(model, all.scalars) + runner.first_stop + j];
+    const int elements = first_of_elements(model, all.scalars) + runner.first_element_coordinate;
+    for (int j = 0; j < runner.element_coordinates; ++j)
+      force[kMotions * runner.wheelsets + j] = all.force[elements + j];
     move_by(runner, force, w.solved + runner.first, reactions_of(model, s, runner));
-    keep_brakes(runner, all.motion + first_stop(model, all.scalars) + runner.first_stop,
-                w.brake + runner.first_stop, s);
+    keep_elements(runner, all.motion + elements, all.force + elements, w, s);
   }
   return met;
 }

@@ -221,7 +221,7 @@ bool is_usable(const NewtonProblem& p, const double* force) noexcept {
 
 void find_roots(const NewtonProblem& p, double* root) noexcept {
   for (int i = 0; i < p.n; ++i) {
-    const double own = p.Y[i * p.n + i];
+    const double own = p.diagonal != nullptr ? p.diagonal[i] : p.Y[i * p.n + i];
     root[i] = own > 0. ? std::sqrt(own) : 0.;
   }
 }

@@ -56,6 +56,8 @@ struct NewtonProblem {
   const double* z_free;  // [n]
   double* scratch;       // newton_scratch() of the sizes
   double tolerance = kNewtonTolerance;
+  /// [n] what lends sizes in place of Y's diagonal, m/N; null: that
+  const double* diagonal = nullptr;
 };
 
 /// Whether all numbers are finite, and blocks follow each other and fill the n coordinates.

@@ -270,7 +270,9 @@ void describe_track(Archive& a, Model& m) {
   for (const ContactId i : contacts(m)) describe(a, m.contact[i], m);
   a.count(m.runners, kMaxRunners);
   a.count(m.runner_wheelsets, kMaxRunnerWheelsets);
-  a.count(m.runner_stops, kMaxRunnerStops);
+  a.count(m.runner_force_elements, kMaxRunnerForceElements);
+  a.count(m.element_coordinates, 2 * m.runner_force_elements);
+  a.count(m.element_memory, kMostElementMemory * m.runner_force_elements);
   a.count(m.runner_rods, kMaxRunnerRods);
   describe(a, m.design_line);
   for (std::int32_t i = 0; i < m.runners; ++i) describe(a, m.runner[i], m.design_line);

@@ -96,6 +96,22 @@ void describe(Archive& a, DesignLine& l) {
   a.count(l.pieces, kMostLinePieces);
 }
 
+template <typename Archive>
+void describe(Archive& a, ForceElement& e) {
+  auto law = static_cast<std::int32_t>(e.law);
+  a.count(law, kElementLaws - 1);
+  e.law = static_cast<ElementLaw>(law);
+  a.count(e.coordinate, 2 * kMaxForceElements);
+  a.count(e.memory, kMostElementMemory * kMaxRunnerForceElements);
+  a.count(e.curve.points, kMostCurvePoints);
+  a.real(e.curve.slope_before);
+  a.reals(e.curve.point, std::int64_t{3} * e.curve.points);
+  for (double* x : {&e.stiffness, &e.damping, &e.per_way}) a.real(*x);
+  describe(a, e.value, 0);
+  a.count(e.loaded, 1);
+  for (double* x : {&e.load_at_rest, &e.load_stiffness, &e.preload}) a.real(*x);
+}
+
 /// The design line must be known.
 template <typename Archive>
 void describe(Archive& a, RunnerModel& r, const DesignLine& line) {
@@ -113,16 +129,15 @@ void describe(Archive& a, RunnerModel& r, const DesignLine& line) {
   }
   describe(a, r.contact);
   for (std::int32_t& point : r.load_point) a.count(point, kMaxLoadPoints - 1);
-  a.count(r.stops, kMaxStopsOfRunner);
-  for (std::int32_t i = 0; i < r.stops; ++i) {
-    StopModel& stop = r.stop[i];
-    for (double* x : {&stop.below, &stop.above, &stop.stiffness, &stop.damping, &stop.per_way})
-      a.real(*x);
-    describe(a, stop.limit, 0);
-  }
-  a.count(r.first_stop, kMaxRunnerStops);
+  a.count(r.force_elements, kMaxForceElements);
+  a.count(r.first_force_element, kMaxRunnerForceElements);
+  for (std::int32_t i = 0; i < r.force_elements; ++i) describe(a, r.force_element[i]);
+  a.count(r.element_coordinates, 2 * r.force_elements);
+  a.count(r.first_element_coordinate, 2 * kMaxRunnerForceElements);
   const std::int64_t n = r.size, meets = interface_size(r);
-  for (const double** of : {&r.stop_row, &r.stop_moved}) a.reals(*of, n * r.stops);
+  for (const double** of : {&r.element_row, &r.element_moved})
+    a.reals(*of, n * r.element_coordinates);
+  a.reals(r.element_compliance, r.element_coordinates);
   a.reals(r.compliance, meets * meets);
   a.count(r.first_rod, kMaxRunnerRods);
   a.count(r.rods, kMaxRodsOfRunner);
@@ -148,7 +163,7 @@ void describe(Archive& a, RunnerModel& r, const DesignLine& line) {
   std::int32_t series = f.series != nullptr ? 1 : 0;
   a.count(series, 1);
   a.reals(f.series, series * n * poses);
-  a.reals(f.stops, poses * r.stops);
+  a.reals(f.elements_moved, poses * r.element_coordinates);
   a.reals(f.rods, poses * r.rods);
   a.reals(f.rod_moved, r.rods > 0 ? n * poses : 0);
   a.reals(f.rod_reaction, r.rods > 0 ? poses * constraint_count(r) : 0);

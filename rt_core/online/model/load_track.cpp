@@ -182,26 +182,51 @@ bool contact_is_valid(const RollingContact& c) noexcept {
          (!drawn || profiles_are_valid(c.profiles));
 }
 
-bool stops_are_valid(const Model& m, const RunnerModel& r, std::int32_t first_stop) noexcept {
-  for (std::int32_t i = 0; i < r.stops; ++i) {
-    const StopModel& stop = r.stop[i];
-    if (!(stop.below >= 0.) || !(stop.above >= 0.) || !(stop.stiffness > 0.) ||
-        !(stop.per_way >= 0.) || !(stop.damping >= 0.) ||
-        (is_brake(stop) && !force_is_valid(m, stop.limit)))
-      return false;
-  }
-  return r.first_stop == first_stop && (r.stops == 0 || (r.stop_row && r.stop_moved));
-}
-
-/// How many wheelsets, stops and rods runners have.
+/// How many wheelsets, rods and force elements runners have, with the coordinates and the memory of
+/// the latter.
 struct RunnerCounts {
-  std::int32_t wheelsets = 0, stops = 0, rods = 0;
+  std::int32_t wheelsets = 0, rods = 0, elements = 0, coordinates = 0, memory = 0;
 };
 
-/// Wheelsets are among the bodies, and follow those of the runners before, as stops and rods do.
+/// A curve that does not fall and has no leaps.
+bool curve_is_valid(const RisingCurve& c) noexcept {
+  if (c.points < 1 || !c.point || !is_not_negative(c.slope_before)) return false;
+  for (std::int32_t i = 0; i < c.points; ++i) {
+    const double *at = c.point + std::ptrdiff_t{3} * i, *next = at + 3;
+    if (!is_moderate(at[0]) || !is_moderate(at[1]) || !is_not_negative(at[2])) return false;
+    if (i + 1 < c.points && !(next[0] >= at[0] && next[1] >= at[1])) return false;
+  }
+  return true;
+}
+
+bool element_is_valid(const Model& m, const ForceElement& e) noexcept {
+  if (!is_moderate(e.preload) || (e.loaded != 0 && !is_friction(e.law))) return false;
+  if (has_curve(e.law)) return curve_is_valid(e.curve) && e.per_way == 0.;
+  if (!force_is_valid(m, e.value)) return false;
+  if (!is_friction(e.law)) return e.per_way == 0.;
+  return is_above_zero(e.stiffness) && is_not_negative(e.damping) && is_not_negative(e.per_way) &&
+         (e.loaded == 0 || e.law != ElementLaw::berg) && is_moderate(e.load_at_rest) &&
+         is_not_negative(e.load_stiffness);
+}
+
+bool elements_are_valid(const Model& m, const RunnerModel& r, const RunnerCounts& before) noexcept {
+  std::int32_t coordinates = 0, memory = before.memory;
+  for (std::int32_t i = 0; i < r.force_elements; ++i) {
+    const ForceElement& e = r.force_element[i];
+    if (!element_is_valid(m, e) || e.coordinate != coordinates || e.memory != memory) return false;
+    coordinates += 1 + e.loaded;
+    memory += memory_of(e.law);
+  }
+  return r.first_force_element == before.elements && r.element_coordinates == coordinates &&
+         r.first_element_coordinate == before.coordinates &&
+         (coordinates == 0 || (r.element_row && r.element_moved && r.element_compliance &&
+                               are_not_negative(r.element_compliance, coordinates)));
+}
+
+/// Wheelsets are among the bodies, and follow those of the runners before, as rods and force
+/// elements do.
 bool runner_is_valid(const Model& m, const RunnerModel& r, const RunnerCounts& before) noexcept {
-  if (!suspended_is_valid(m, r) || !stops_are_valid(m, r, before.stops) || r.bodies < 1)
-    return false;
+  if (!suspended_is_valid(m, r) || !elements_are_valid(m, r, before) || r.bodies < 1) return false;
   if (r.first_wheelset != before.wheelsets || r.wheelsets < 1) return false;
   if (r.rolls_freely != 0 && (!r.by_way || (m.lines > 0 && m.endless.bays != 0))) return false;
   if (r.first_rod != before.rods || !r.reaction || (r.rods > 0 && !r.rod_row)) return false;
@@ -218,12 +243,17 @@ bool runners_are_valid(const Model& m) noexcept {
   RunnerCounts all;
   for (std::int32_t i = 0; i < m.runners; ++i) {
     if (!runner_is_valid(m, m.runner[i], all)) return false;
-    all.wheelsets += m.runner[i].wheelsets;
-    all.stops += m.runner[i].stops;
-    all.rods += m.runner[i].rods;
+    const RunnerModel& r = m.runner[i];
+    all.wheelsets += r.wheelsets;
+    all.rods += r.rods;
+    all.elements += r.force_elements;
+    all.coordinates += r.element_coordinates;
+    for (std::int32_t j = 0; j < r.force_elements; ++j)
+      all.memory += memory_of(r.force_element[j].law);
   }
-  return all.wheelsets == m.runner_wheelsets && all.stops == m.runner_stops &&
-         all.rods == m.runner_rods && newton_size(m) <= kMostNewton &&
+  return all.wheelsets == m.runner_wheelsets && all.rods == m.runner_rods &&
+         all.elements == m.runner_force_elements && all.coordinates == m.element_coordinates &&
+         all.memory == m.element_memory && newton_size(m) <= kMostNewton &&
          (m.lines == 0 || all.wheelsets <= kMaxSeatedWheelsets);
 }
 

@@ -324,7 +324,9 @@ struct Model {
   SuspendedModel vehicle[kMaxVehicles];
   ContactModel contact[kMaxWheels];  // by ContactId
   RailSignal signal[kMaxSignals];
-  std::int32_t runners, runner_wheelsets, runner_stops, runner_rods;  // the latter of all runners
+  std::int32_t runners, runner_wheelsets, runner_rods;  // the latter of all runners
+  /// Force elements of all runners, their displacements, and the numbers that states keep of them.
+  std::int32_t runner_force_elements, element_coordinates, element_memory;
   RunnerModel runner[kMaxRunners];
   std::int32_t external_wheels;
   ExternalWheelModel external_wheel[kMaxExternalWheels];

@@ -1,6 +1,7 @@
 #pragma once
 #include <cstdint>
 
+#include "online/model/force_element.h"
 #include "online/model/suspended_model.h"
 #include "online/patch/creep_law.h"
 #include "online/patch/kalker.h"
@@ -70,47 +71,10 @@ inline bool has_profiles(const RollingContact& c) noexcept {
   return c.profiles.pair.wheel.points > 0;
 }
 
-/// A bump stop: a spring beyond a gap against and along its axis. Or the brake of a wheelset: a
-/// spring and a damper about its axle that slide at a limit. This is Coulomb friction that can hold
-/// a wheel.
-struct StopModel {
-  double below, above;   // gaps, m; 0 of a brake
-  double stiffness;      // N/m; N m/rad
-  double damping = 0.;   // of a brake, N m s/rad
-  double per_way = 0.;   // 1/radius of the braked wheels, 1/m; 0 of a bump stop
-  BodyForce limit = {};  // of a brake's moment, N m
-};
-inline bool is_brake(const StopModel& stop) noexcept { return stop.per_way > 0.; }
-/// A brake in a step. The rate of its turn z is `rate` z + `rate_at_zero`.
-struct BrakeStep {
-  double anchor, limit;       // turn at which its spring is slack, rad; N m
-  double rate, rate_at_zero;  // 1/s, rad/s
-};
-struct StopForce {
-  double force, slope, energy;  // N, on the body that moves; N/m; J
-};
-/// @param z     displacement along the axis, m, or whole turn of the wheelset, rad
-/// @param brake  where the stop is one
-inline StopForce stop_force(const StopModel& stop, double z, const BrakeStep& brake = {}) noexcept {
-  if (is_brake(stop)) {
-    const double turned = z - brake.anchor;
-    const double held =
-        -stop.stiffness * turned - stop.damping * (brake.rate * z + brake.rate_at_zero);
-    const bool slides = held >= brake.limit || held <= -brake.limit;
-    const double force = !slides ? held : held > 0. ? brake.limit : -brake.limit;
-    return {force, slides ? 0. : -(stop.stiffness + stop.damping * brake.rate),
-            .5 * stop.stiffness * turned * turned};
-  }
-  if (z < stop.above && z > -stop.below) return {0., 0., 0.};
-  const double pressed = z < stop.above ? z + stop.below : z - stop.above;
-  const double force = -stop.stiffness * pressed;
-  return {force, -stop.stiffness, -.5 * force * pressed};
-}
-
 inline constexpr int kWheelsetRank = 6;  // scalars of a wheelset: three forces of each wheel
 inline constexpr int kMaxRunners = 8;
-inline constexpr int kMaxStopsOfRunner = 16;
-inline constexpr int kMaxRunnerStops = kMaxRunners * kMaxStopsOfRunner;  // of all runners
+inline constexpr int kMaxForceElements = 32;                                     // of one runner
+inline constexpr int kMaxRunnerForceElements = kMaxRunners * kMaxForceElements;  // of all runners
 inline constexpr int kMaxRodsOfRunner = 8;
 inline constexpr int kMaxRunnerRods = 16;  // of all runners
 inline constexpr int kMaxWheelsetsOfRunner = 8;
@@ -155,8 +119,8 @@ struct RunnerFrames {
   const double* stiffness;  // [pairs][12][12] of a pair's elements over its motions
   const double* preload;    // [pairs][12] of its elements on both bodies, N and N m
   const double* series;  // [size][6 pairs] forces against poses by springs in series with dampers
-  const double* stops;   // [stops][6 pairs] displacement of each
-  const double* rods;    // [rods][6 pairs] elongation of each
+  const double* elements_moved;  // [element_coordinates][6 pairs] displacement of each
+  const double* rods;            // [rods][6 pairs] elongation of each
   const double* rod_moved;     // [size][6 pairs] displacements by which the rods keep their length
   const double* rod_reaction;  // [1 + rods][6 pairs] as `reaction`
 };
@@ -174,16 +138,22 @@ struct RunnerModel : SuspendedModel {
   std::int32_t bodies, first_wheelset, wheelsets;  // the first one among those of all runners
   RunnerWheelset wheelset[kMaxWheelsetsOfRunner];
   RollingContact contact;
-  std::int32_t load_point[2];      // on left and right rail: height at which its wheels press
-  std::int32_t first_stop, stops;  // the first one among those of all runners
-  StopModel stop[kMaxStopsOfRunner];
-  const double *stop_row, *stop_moved;  // [stops][size] over its coordinates; `inverse` times it
-  std::int32_t first_rod, rods;         // the first one among those of all runners
-  const double* rod_row;                // [rods][size] elongation of each
-  const double* reaction;  // [1 + rods][size] force ahead of the drive, then the tension of
-                           // each rod, by a unit force along each coordinate
-  /// [6 wheelsets + stops][6 wheelsets + stops] theta times the part of the inverse for the
-  /// wheelsets' motions, then for the stops.
+  std::int32_t load_point[2];  // on left and right rail: height at which its wheels press
+  std::int32_t first_force_element, force_elements;  // the first one among those of all runners
+  ForceElement force_element[kMaxForceElements];
+  /// The displacements of the force elements, each followed by that of its load, if it has one.
+  std::int32_t first_element_coordinate, element_coordinates;
+  /// [element_coordinates][size] over its coordinates; `inverse` times it.
+  const double *element_row, *element_moved;
+  std::int32_t first_rod, rods;  // the first one among those of all runners
+  const double* rod_row;         // [rods][size] elongation of each
+  const double* reaction;        // [1 + rods][size] force ahead of the drive, then the tension of
+                                 // each rod, by a unit force along each coordinate
+  /// Compliance of each displacement of a force element by its own force, if its law has corners;
+  /// 0 of the others and of loads.
+  const double* element_compliance;
+  /// [interface_size()][interface_size()] theta times the part of the inverse for the wheelsets'
+  /// motions, then for the displacements of force elements without `element_compliance`.
   const double* compliance;
   RunnerFrames frames;
 };
@@ -196,9 +166,9 @@ struct WheelId {
 constexpr WheelId wheel_of(std::int32_t number) noexcept { return {number / 2, number % 2}; }
 
 /// How many coordinates of a runner meet forces that are not linear: the motions of its wheelsets,
-/// then the displacements of its stops.
+/// then the displacements of its force elements.
 inline std::int32_t interface_size(const RunnerModel& runner) noexcept {
-  return kMotions * runner.wheelsets + runner.stops;
+  return kMotions * runner.wheelsets + runner.element_coordinates;
 }
 
 /// How far a runner is ahead of its frame by its first body, m. @param u  [size] of the runner

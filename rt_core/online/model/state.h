@@ -30,7 +30,7 @@ struct State {
   /// [wheels of runners][3] creepages along, across and of spin (1/m) of the last step, if any
   /// runner rolls freely.
   double* creepage;
-  double* anchor;      // [stops of runners] BrakeStep::anchor, rad, if there are brakes
+  double* element_memory;  // [element_memory] of force elements, memory_of()
   double* reaction;    // [runners + their rods] N, of the last step: of each runner the force ahead
                        // of its drive, then the tensions of its rods
   double* multiplier;  // [wheelsets][kGuideRows] of the guide along x, N, and about z, N m;
@@ -54,7 +54,8 @@ inline std::int32_t newton_size(const Model& model) noexcept {
     return model.runner_wheelsets == 0
                ? 0
                : contact_count(model) + model.fixed.count +
-                     (kMotions + 2 * kWheelSeatRows) * model.runner_wheelsets + model.runner_stops;
+                     (kMotions + 2 * kWheelSeatRows) * model.runner_wheelsets +
+                     model.element_coordinates;
   std::int32_t most = 0;
   for (std::int32_t i = 0; i < model.runners; ++i)
     if (interface_size(model.runner[i]) > most) most = interface_size(model.runner[i]);
@@ -80,8 +81,8 @@ inline std::int64_t newton_doubles(const Model& model) noexcept {
   for (std::int32_t i = 0; i < model.runners; ++i) {
     const RunnerModel& r = model.runner[i];
     const std::int64_t ranks = wheelset_ranks(r, kMotions) * r.wheelsets;
-    const std::int64_t own =
-        newton_scratch(interface_size(r), ranks + r.stops, ranks * kMotions + r.stops);
+    const std::int64_t own = newton_scratch(interface_size(r), ranks + r.force_elements,
+                                            ranks * kMotions + r.element_coordinates);
     if (own > most) most = own;
   }
   return most;
@@ -116,8 +117,8 @@ inline std::int64_t beside_doubles(const Model& model) noexcept {
          (model.form == Form::banded ? model.line_unknowns : 0);
 }
 
-inline constexpr std::int64_t kBrakeDoubles = 4;
-static_assert(sizeof(BrakeStep) == kBrakeDoubles * sizeof(double));
+inline constexpr std::int64_t kElementStepDoubles = 4;
+static_assert(sizeof(ElementStep) == kElementStepDoubles * sizeof(double));
 
 /// Scratch, meaningless between steps. The caller owns the memory: workspace_doubles() of it.
 struct Workspace {
@@ -135,11 +136,11 @@ struct Workspace {
   /// imaginary part of condensed ones; of banded ones L^-1 and D^-1 L^-1 of the row, in its panels
   /// alone.
   double *unit, *unit_second;
-  double* compliance;  // [ports][ports] of the coupled solve, m/N
-  double* newton;      // newton_doubles()
-  double* beside;      // beside_doubles()
-  double* profile;     // profile_doubles()
-  BrakeStep* brake;    // [stops of runners] if there are brakes
+  double* compliance;         // [ports][ports] of the coupled solve, m/N
+  double* newton;             // newton_doubles()
+  double* beside;             // beside_doubles()
+  double* profile;            // profile_doubles()
+  ElementStep* element_step;  // [force elements of runners]
 };
 
 /// Value of an input; 0 if there is no state yet.
@@ -179,8 +180,8 @@ struct Outputs {
   /// The way of the first body of rail vehicles that roll freely, m, and its speed, m/s; else 0.
   double runner_way[kMaxRunners], runner_speed[kMaxRunners];
   double rod_tension[kMaxRunnerRods];  // N, of the rigid rods of rail vehicles
-  /// N, of their bump stops along the axis, on the first body; N m, of their brakes on wheelsets.
-  double stop_force[kMaxRunnerStops];
+  /// N or N m, of their force elements on the first body; of lines tension.
+  double element_force[kMaxRunnerForceElements];
   /// The point of the rail under each external wheel at the frame's end.
   bool external_on_rail[kMaxExternalWheels];
   double external_place[kMaxExternalWheels];            // m along the model's elements
@@ -231,15 +232,6 @@ inline double* creepage_of(const State& state, std::int32_t wheelset, std::int32
   return state.creepage + std::ptrdiff_t{kWheelCreep} * WheelId{wheelset, side}.number();
 }
 
-/// Numbers of State::anchor.
-inline std::int64_t anchor_doubles(const Model& model) noexcept {
-  bool any = false;
-  for (std::int32_t i = 0; i < model.runners; ++i)
-    for (std::int32_t j = 0; j < model.runner[i].stops; ++j)
-      any = any || is_brake(model.runner[i].stop[j]);
-  return any ? model.runner_stops : 0;
-}
-
 /// The forces of a runner's constraints, [constraint_count].
 inline double* reactions_of(const Model& model, const State& state,
                             const RunnerModel& runner) noexcept {
@@ -250,10 +242,10 @@ inline double* reactions_of(const Model& model, const State& state,
 inline std::int64_t seat_doubles(const Model& model) noexcept {
   return keeps_seats(model) ? 2LL * kSeatMotions * model.runner_wheelsets : 0;
 }
-/// Numbers of State::wheel_force, State::seat, State::creepage and State::anchor.
+/// Numbers of State::wheel_force, State::seat, State::creepage and State::element_memory.
 inline std::int64_t wheel_state_doubles(const Model& model) noexcept {
   return 2LL * (kWheelForces + (keeps_creepage(model) ? kWheelCreep : 0)) * model.runner_wheelsets +
-         seat_doubles(model) + anchor_doubles(model);
+         seat_doubles(model) + model.element_memory;
 }
 /// Numbers of these and of State::reaction.
 inline std::int64_t runner_state_doubles(const Model& model) noexcept {
@@ -276,7 +268,7 @@ inline std::int64_t workspace_doubles(const Model& model) noexcept {
   const std::int64_t units = has_units(model) ? 2 * rows : 0;
   return (4 + units + of_modes) * model.unknowns + system_workspace_doubles(model.system) +
          ports * ports + newton_doubles(model) + beside_doubles(model) + profile_doubles(model) +
-         kBrakeDoubles * anchor_doubles(model) +
+         kElementStepDoubles * model.runner_force_elements +
          (model.external_wheels > 0 ? state_doubles(model) : 0) +
          (model.scheme.stage_fraction > 0. ? 2LL * model.unknowns : 0);
 }
@@ -289,7 +281,7 @@ inline State state_on(const Model& model, double* memory) noexcept {
   double* const runners = ports + model.fixed.count;
   double* const seats = runners + 2LL * kWheelForces * model.runner_wheelsets;
   double* const creepages = seats + seat_doubles(model);
-  double* const anchors =
+  double* const memories =
       creepages + (keeps_creepage(model) ? 2LL * kWheelCreep * model.runner_wheelsets : 0);
   double* const reactions = runners + wheel_state_doubles(model);
   double* const guides = runners + runner_state_doubles(model);
@@ -306,7 +298,7 @@ inline State state_on(const Model& model, double* memory) noexcept {
           runners,
           seats,
           creepages,
-          anchors,
+          memories,
           reactions,
           guides,
           system,
@@ -327,8 +319,8 @@ inline Workspace workspace_on(const Model& model, double* memory) noexcept {
   double* const of_newton = compliance + ports * ports;
   double* const beside = of_newton + newton_doubles(model);
   double* const profile = beside + beside_doubles(model);
-  double* const brake = profile + profile_doubles(model);
-  double* const external = brake + kBrakeDoubles * anchor_doubles(model);
+  double* const element_step = profile + profile_doubles(model);
+  double* const external = element_step + kElementStepDoubles * model.runner_force_elements;
   return {memory,
           memory + n,
           memory + 2 * n,
@@ -344,7 +336,7 @@ inline Workspace workspace_on(const Model& model, double* memory) noexcept {
           of_newton,
           beside,
           profile,
-          reinterpret_cast<BrakeStep*>(brake)};
+          reinterpret_cast<ElementStep*>(element_step)};
 }
 
 /// Copies a state to other memory, without the latched status.

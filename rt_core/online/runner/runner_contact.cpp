@@ -1,7 +1,7 @@
 #include "online/runner/runner_contact.h"
 
 #include "online/math/dense.h"
-#include "online/runner/body_force.h"
+#include "online/runner/force_elements.h"
 #include "online/track/travel.h"
 
 namespace railstep {
@@ -28,12 +28,6 @@ void publish_constraints(const Model& model, const RunnerModel& runner, const St
     longer = std::fabs(longer);
     if (longer > out.constraint_violation) out.constraint_violation = longer;
   }
-}
-
-void publish_stops(const Model& model, const RunnerModel& runner, const State& at,
-                   const double* poses, Outputs& out) noexcept {
-  for (std::int32_t j = 0; j < runner.stops; ++j)
-    out.stop_force[runner.first_stop + j] = standing_stop(model, runner, j, at, poses).force.force;
 }
 
 bool has_large_turn(const RunnerModel& runner, const State& at) noexcept {
@@ -143,27 +137,6 @@ void add_line_forces(const Model& model, const RunnerModel& runner, const OnLine
   columns_multiply_add(runner.frames.series, pose, force, runner.size, n);
 }
 
-BrakeStep brake_step(const RunnerModel& runner, std::int32_t j, double time,
-                     const State& s) noexcept {
-  const double limit = force_at(runner.stop[j].limit, time, s.input);
-  return {s.anchor[runner.first_stop + j], limit > 0. ? limit : 0., 0., 0.};
-}
-
-StandingStop standing_stop(const Model& model, const RunnerModel& runner, std::int32_t j,
-                           const State& at, const double* poses) noexcept {
-  const StopModel& stop = runner.stop[j];
-  const double* const row = runner.stop_row + std::ptrdiff_t{runner.size} * j;
-  double z = dot(row, at.u + runner.first, runner.size);
-  if (poses != nullptr) z += by_poses(runner, runner.frames.stops, j, poses);
-  if (!is_brake(stop)) return {z, stop_force(stop, z)};
-  const double time = static_cast<double>(at.steps) * model.scheme.dt;
-  const Travelled frame = travelled(runner.travel, time);
-  z += stop.per_way * frame.distance;
-  BrakeStep brake = brake_step(runner, j, time, at);
-  brake.rate_at_zero = dot(row, at.v + runner.first, runner.size) + stop.per_way * frame.speed;
-  return {z, stop_force(stop, z, brake)};
-}
-
 Rolling rolling_of(const RunnerModel& runner, int wheelset, double frame, const double* v,
                    const double* creepage, double dt) noexcept {
   // Slower than kSlow creep follows slip in a length, and the direction stays as it was below
@@ -217,11 +190,14 @@ Status publish_runners(const Model& model, const State& at, Outputs& outputs) no
     const RunnerModel& runner = model.runner[n];
     for (int i = 0; i < runner.wheelsets; ++i) publish_wheelset(model, runner, i, at, outputs);
     double pose[kMostPoses];
-    const double* const poses = runner.stops + runner.rods > 0
+    const double* const poses = runner.force_elements + runner.rods > 0
                                     ? poses_of(model, runner, along_in(runner, at), pose)
                                     : nullptr;
     publish_constraints(model, runner, at, poses, outputs);
-    publish_stops(model, runner, at, poses, outputs);
+    for (std::int32_t j = 0; j < runner.force_elements; ++j)
+      outputs.element_force[runner.first_force_element + j] =
+          standing_element(model, runner, j, at, poses).force.force +
+          runner.force_element[j].preload;
     if (has_large_turn(runner, at)) met = met | Status::large_turn;
   }
   return met;

@@ -36,7 +36,8 @@ const double* poses_of(const Model& model, const RunnerModel& runner, const Alon
 /// @param force  [size]
 void add_line_forces(const Model& model, const RunnerModel& runner, const OnLine& at, double span,
                      const double* u, const double* v, double* force) noexcept;
-/// Displacement of a stop or elongation of a rod by the poses of frames. @param rows  its table
+/// Displacement of a force element or elongation of a rod by the poses of frames.
+/// @param rows  its table
 inline double by_poses(const RunnerModel& runner, const double* rows, std::int32_t row,
                        const double* poses) noexcept {
   const std::int32_t n = kMotions * runner.frames.pairs;
@@ -72,20 +73,6 @@ double element_place(const Model& model, const RunnerModel& runner, int wheelset
 /// @param dt        time since the creep was found, s; 0: it has not changed
 Rolling rolling_of(const RunnerModel& runner, int wheelset, double frame, const double* v,
                    const double* creepage, double dt) noexcept;
-
-/// @param j  a brake among the runner's stops
-BrakeStep brake_step(const RunnerModel& runner, std::int32_t j, double time,
-                     const State& s) noexcept;
-
-/// Displacement of a stop in a state, and its force. The displacement of a brake includes the turn
-/// by which its wheels roll along the frame's way.
-/// @param poses  of poses_of()
-struct StandingStop {
-  double z;
-  StopForce force;
-};
-StandingStop standing_stop(const Model& model, const RunnerModel& runner, std::int32_t j,
-                           const State& at, const double* poses) noexcept;
 
 /// Publishes the wheels and wheelsets of all runners, and the forces that hold them at their
 /// places.

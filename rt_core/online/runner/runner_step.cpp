@@ -112,63 +112,6 @@ void find_motion(const RunnerStage& at, int wheelset, const State& s, const Work
   }
 }
 
-void find_stops(const RunnerStage& at, const State& s, const Workspace& w, const double* u,
-                double* free, double* start, BrakeStep* brake) noexcept {
-  const RunnerModel& r = at.runner;
-  const Scheme& c = at.model.scheme;
-  double pose[kMostPoses];
-  const double* const poses =
-      r.stops > 0 ? poses_of(at.model, r, at.along(c.theta, s), pose) : nullptr;
-  const double time = at.time(c.theta);
-  const Travelled frame = travelled(r.travel, time);
-  const double *u0 = s.u + r.first, *u_star = w.u_star + r.first, *g = s.g + r.first;
-  for (std::int32_t j = 0; j < r.stops; ++j) {
-    const double* const row = r.stop_row + std::ptrdiff_t{r.size} * j;
-    const double before = dot(row, u0, r.size);
-    free[j] = before + c.theta * (dot(row, u, r.size) - before);
-    start[j] =
-        before + c.theta * ((dot(row, u_star, r.size) + dot(row, g, r.size) / c.kg) - before);
-    if (poses != nullptr) {
-      const double moved = by_poses(r, r.frames.stops, j, poses);
-      free[j] += moved;
-      start[j] += moved;
-    }
-    if (!is_brake(r.stop[j])) continue;
-    // Whole turns count from the anchor.
-    brake[j] = brake_step(r, j, time, s);
-    const double turned = r.stop[j].per_way * frame.distance - brake[j].anchor;
-    brake[j].anchor = 0.;
-    brake[j].rate = at.rate;
-    free[j] += turned;
-    start[j] += turned;
-    brake[j].rate_at_zero =
-        r.stop[j].per_way * frame.speed - at.rate * turned +
-        (at.held < 1. ? -at.rate * before
-                      : dot(row, w.v_star + r.first, r.size) - at.rate * dot(row, u_star, r.size));
-  }
-}
-
-void stop_law(const StopModel& stop, const BrakeStep* brake, double z, double* force,
-              const LawSlopes* slopes) noexcept {
-  const StopForce own = is_brake(stop) ? stop_force(stop, z, *brake) : stop_force(stop, z);
-  *force = own.force;
-  if (slopes == nullptr) return;
-  *slopes->spread = 1.;
-  *slopes->slope = own.slope;
-}
-
-void keep_brakes(const RunnerModel& runner, const double* z, const BrakeStep* brake,
-                 State& s) noexcept {
-  for (std::int32_t j = 0; j < runner.stops; ++j) {
-    const StopModel& stop = runner.stop[j];
-    if (!is_brake(stop)) continue;
-    const double most = brake[j].limit / stop.stiffness;
-    double& anchor = s.anchor[runner.first_stop + j];
-    if (z[j] > most) anchor += z[j] - most;
-    if (z[j] < -most) anchor += z[j] + most;
-  }
-}
-
 void move_by(const RunnerModel& runner, const double* force, double* u, double* reaction) noexcept {
   const auto add = [&](const double* column, double by) noexcept {
 #pragma omp simd
@@ -181,13 +124,19 @@ void move_by(const RunnerModel& runner, const double* force, double* u, double* 
     for (std::int32_t c = 0; c < constraint_count(runner); ++c)
       reaction[c] += runner.reaction[std::ptrdiff_t{runner.size} * c + own] * force[i];
   }
-  for (std::int32_t j = 0; j < runner.stops; ++j) {
-    const double* const row = runner.stop_row + std::ptrdiff_t{runner.size} * j;
-    add(runner.stop_moved + std::ptrdiff_t{runner.size} * j, force[motions + j]);
+  for (std::int32_t j = 0; j < runner.element_coordinates; ++j) {
+    const double* const row = runner.element_row + std::ptrdiff_t{runner.size} * j;
+    add(runner.element_moved + std::ptrdiff_t{runner.size} * j, force[motions + j]);
     for (std::int32_t c = 0; c < constraint_count(runner); ++c)
       reaction[c] += dot(runner.reaction + std::ptrdiff_t{runner.size} * c, row, runner.size) *
                      force[motions + j];
   }
+}
+
+void find_diagonal(const RunnerModel& r, double* diagonal) noexcept {
+  const std::int32_t n = interface_size(r), motions = kMotions * r.wheelsets;
+  for (std::int32_t i = 0; i < n; ++i)
+    diagonal[i] = r.compliance[i * n + i] + (i < motions ? 0. : r.element_compliance[i - motions]);
 }
 
 Status status_of(NewtonStatus met) noexcept {
@@ -209,7 +158,7 @@ RunnerResult solve_runner(const RunnerStage& at, State& s, Workspace& w) noexcep
   const RunnerModel& r = at.runner;
   double* const u = w.solved + r.first;
   move_freely(at, s, w, u);
-  LawBlock block[kMaxWheelsetsOfRunner + kMaxStopsOfRunner];
+  LawBlock block[kMaxWheelsetsOfRunner + kMaxForceElements];
   WheelsetLaw law[kMaxWheelsetsOfRunner];
   double z_free[kMostInterfaces], z[kMostInterfaces], force[kMostInterfaces];
   for (int i = 0; i < r.wheelsets; ++i) {
@@ -226,16 +175,18 @@ RunnerResult solve_runner(const RunnerStage& at, State& s, Workspace& w) noexcep
     block[i] = {kMotions * i, kMotions, law[i].rank()};
   }
   const std::int32_t motions = kMotions * r.wheelsets;
-  BrakeStep* const brake = w.brake + r.first_stop;
-  find_stops(at, s, w, u, z_free + motions, z + motions, brake);
-  for (std::int32_t j = 0; j < r.stops; ++j) block[r.wheelsets + j] = {motions + j, 1, 1};
+  find_elements(at, s, w, u, z_free + motions, z + motions);
+  for (std::int32_t j = 0; j < r.force_elements; ++j)
+    block[r.wheelsets + j] = element_block(r.force_element[j], motions);
+  double diagonal[kMostInterfaces];
+  find_diagonal(r, diagonal);
   const NewtonResult met = solve_laws(
-      {interface_size(r), r.wheelsets + r.stops, r.compliance, block, z_free, w.newton,
-       kRunnerTolerance},
+      {interface_size(r), r.wheelsets + r.force_elements, r.compliance, block, z_free, w.newton,
+       kRunnerTolerance, r.force_elements > 0 ? diagonal : nullptr},
       [&](int b, const double* at_z, double* f, const LawSlopes* slopes, double* steep) noexcept {
-        const int stop = b - r.wheelsets;
-        if (stop >= 0) return stop_law(r.stop[stop], brake + stop, *at_z, f, slopes);
-        law[b].evaluate(at_z, f, slopes, steep);
+        const int element = b - r.wheelsets;
+        if (element < 0) return law[b].evaluate(at_z, f, slopes, steep);
+        evaluate_element(r, element, w, at_z, f, slopes);
       },
       force, z);
   // The last point that was tried need not be the best one.
@@ -243,7 +194,7 @@ RunnerResult solve_runner(const RunnerStage& at, State& s, Workspace& w) noexcep
   for (int i = 0; i < r.wheelsets && met.status != NewtonStatus::converged; ++i)
     law[i].evaluate(z + kMotions * i, force + kMotions * i, nullptr, steep);
   move_by(r, force, u, reactions_of(at.model, s, r));
-  keep_brakes(r, z + motions, brake, s);
+  keep_elements(r, z + motions, force + motions, w, s);
   RunnerResult result{status_of(met.status), met.iterations};
   for (int i = 0; i < r.wheelsets; ++i) {
     result.status = result.status | events_of(law[i]);

@@ -1,11 +1,12 @@
 #pragma once
 #include "online/math/newton.h"
 #include "online/model/state.h"
+#include "online/runner/force_elements.h"
 #include "online/runner/wheelset_law.h"
 
 namespace railstep {
 
-inline constexpr int kMostInterfaces = kMotions * kMaxWheelsetsOfRunner + kMaxStopsOfRunner;
+inline constexpr int kMostInterfaces = kMotions * kMaxWheelsetsOfRunner + 2 * kMaxForceElements;
 /// Tolerance of Newton's method: penetrations are differences of lengths that are 1e4 times as
 /// large.
 inline constexpr double kRunnerTolerance = 1e-10;
@@ -25,23 +26,14 @@ struct WheelsetMotion {
 void find_motion(const RunnerStage& at, int wheelset, const State& s, const Workspace& w,
                  const double* u, WheelsetMotion& motion) noexcept;
 
-/// Displacements of a runner's stops at the contacts' instant.
-/// @param free, start  [stops] out
-/// @param brake         [stops] out: of brakes
-void find_stops(const RunnerStage& at, const State& s, const Workspace& w, const double* u,
-                double* free, double* start, BrakeStep* brake) noexcept;
-
-/// The law of a stop, for solve_laws(). @param brake  of a brake
-void stop_law(const StopModel& stop, const BrakeStep* brake, double z, double* force,
-              const LawSlopes* slopes) noexcept;
-
-/// Lets those brakes slide whose spring is beyond its limit. @param z  [stops]
-void keep_brakes(const RunnerModel& runner, const double* z, const BrakeStep* brake,
-                 State& s) noexcept;
-
-/// Adds the displacements by forces on the wheelsets and stops, and the forces of the constraints.
+/// Adds the displacements by forces on the wheelsets and of force elements, and the forces of the
+/// constraints.
 /// @param force  [interface_size()] @param reaction  [constraint_count()]
 void move_by(const RunnerModel& runner, const double* force, double* u, double* reaction) noexcept;
+
+/// NewtonProblem::diagonal of a runner's coordinates: with the compliance that force elements meet
+/// by themselves. @param diagonal  [interface_size()] out
+void find_diagonal(const RunnerModel& runner, double* diagonal) noexcept;
 
 /// Stores the forces on the wheels of a wheelset as a law last found them.
 void keep_wheel_forces(const RunnerModel& runner, int wheelset, const WheelsetLaw& law,

@@ -41,7 +41,7 @@ void copy_published(const Model& model, const Outputs& from, Outputs& to) noexce
   copy(from.runner_way, to.runner_way, model.runners);
   copy(from.runner_speed, to.runner_speed, model.runners);
   copy(from.rod_tension, to.rod_tension, model.runner_rods);
-  copy(from.stop_force, to.stop_force, model.runner_stops);
+  copy(from.element_force, to.element_force, model.runner_force_elements);
   copy(from.external_on_rail, to.external_on_rail, model.external_wheels);
   copy(from.external_place, to.external_place, model.external_wheels);
   copy(from.external_force, to.external_force, model.external_wheels);

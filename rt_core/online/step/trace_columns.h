@@ -40,10 +40,10 @@ inline constexpr OutputColumn<kMaxRunners> kRunnerColumns[] = {{"drive_n", &Outp
 inline constexpr OutputColumn<kMaxRunners> kFreeRunnerColumns[] = {
     {"x_m", &Outputs::runner_way}, {"speed_m_per_s", &Outputs::runner_speed}};
 inline constexpr OutputColumn<kMaxRunnerRods> kRodColumns[] = {{"force_n", &Outputs::rod_tension}};
-inline constexpr OutputColumn<kMaxRunnerStops> kBumpStopColumns[] = {
-    {"force_n", &Outputs::stop_force}};
-inline constexpr OutputColumn<kMaxRunnerStops> kBrakeColumns[] = {
-    {"moment_n_m", &Outputs::stop_force}};
+inline constexpr OutputColumn<kMaxRunnerForceElements> kElementColumns[] = {
+    {"force_n", &Outputs::element_force}};
+inline constexpr OutputColumn<kMaxRunnerForceElements> kBrakeColumns[] = {
+    {"moment_n_m", &Outputs::element_force}};
 
 /// A column of the rail under an external wheel.
 struct ExternalColumn {
@@ -96,7 +96,7 @@ enum class ColumnOf {
   runner_wheelset,
   runner,
   rod,
-  bump_stop,
+  force_element,
   external_wheel,
   sensor,
   joint,
@@ -121,12 +121,12 @@ void for_each_column(const Model& model, Visit& visit) {
       visit(ColumnOf::runner, i, kRunnerColumns);
   for (std::int32_t i = 0; i < model.runner_rods; ++i) visit(ColumnOf::rod, i, kRodColumns);
   for (std::int32_t r = 0; r < model.runners; ++r)
-    for (std::int32_t j = 0; j < model.runner[r].stops; ++j) {
-      const std::int32_t i = model.runner[r].first_stop + j;
-      if (is_brake(model.runner[r].stop[j]))
-        visit(ColumnOf::bump_stop, i, kBrakeColumns);
+    for (std::int32_t j = 0; j < model.runner[r].force_elements; ++j) {
+      const std::int32_t i = model.runner[r].first_force_element + j;
+      if (is_brake(model.runner[r].force_element[j]))
+        visit(ColumnOf::force_element, i, kBrakeColumns);
       else
-        visit(ColumnOf::bump_stop, i, kBumpStopColumns);
+        visit(ColumnOf::force_element, i, kElementColumns);
     }
   for (std::int32_t i = 0; i < model.external_wheels; ++i)
     visit(ColumnOf::external_wheel, i, kExternalColumns);
