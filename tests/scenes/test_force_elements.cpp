@@ -128,6 +128,26 @@ TEST_CASE("a saturated damper gives its limit and no more", "[force_elements]") 
   CHECK(largest_of(run["car.own.force_n"]) == Approx(2e3).epsilon(1e-12));
 }
 
+TEST_CASE("a saturated damper behind a spring has the spring's force in the trace",
+          "[force_elements]") {
+  const std::string soft = kAlong +
+                           "type = \"nonlinear_damper\"\ntable = [[0.0, 0.0], [1e-3, 1e3], [1.0, "
+                           "1e3]]\nseries_stiffness_n_per_m = 5e6\n";
+  // On a ring forces are held over a step, and nothing damps the rate of what has no mass.
+  for (const char* name : {"manchester_straight", "manchester_ring"}) {
+    INFO(name);
+    const Traced run(
+        scene_with_elements(element_on_bogie("own", soft), name, {kRough, "step.duration_s=0.5"}));
+    const std::vector<double> force = run["car.own.force_n"];
+    double leap = 0.;
+    for (std::size_t i = 1; i < force.size(); ++i)
+      leap = std::max(leap, std::fabs(force[i] - force[i - 1]));
+    CHECK(largest_of(force) > 900.);
+    CHECK(largest_of(force) < 1.05e3);  // the spring overshoots within a step
+    CHECK(leap < 400.);
+  }
+}
+
 TEST_CASE("force elements count in the linear motions", "[force_elements]") {
   const auto speed = [](const std::string& element) {
     const auto found = critical_speed_between(
@@ -234,6 +254,14 @@ TEST_CASE("a car on centre plates stands on them and tips over their rims", "[fo
   CHECK(balance_with(plate, "manchester_straight", words).error < 1e-3);
 }
 
+TEST_CASE("a support whose bodies are named in the wrong order is refused", "[force_elements]") {
+  const Scene scene = scene_with_elements(
+      "[[element]]\nname = \"own\"\nbetween = [\"bogie_1\", \"car\"]\ntype = \"support\"\n"
+      "point_m = [9.5, 0.0, 0.8]\nstiffness_n_per_m = 1e7\n",
+      "manchester_straight", {});
+  CHECK_THROWS_WITH(Simulation(scene), Catch::Contains("E-SUSPENSION-08"));
+}
+
 TEST_CASE("wrong force elements are refused", "[force_elements]") {
   const auto refused = [](const std::string& keys, const std::string& id) {
     CAPTURE(keys);
@@ -248,6 +276,8 @@ TEST_CASE("wrong force elements are refused", "[force_elements]") {
   refused(damper + "table = [[0.0, 0.0]]\n", "E-VEHICLE-35");
   refused(damper + "table = [[-1.0, -2.0], [1.0, 5.0]]\n", "E-VEHICLE-36");
   refused(friction + "friction = 0.3\nnormal = \"nothing\"\n", "E-VEHICLE-34");
+  refused(friction + "friction = 0.3\nnormal = \"anti_roll_bar\"\n", "E-VEHICLE-34");
+  refused(damper + "table = [[0.0, 0.0], [1e-12, 1e6]]\n", "E-VEHICLE-35");
   refused(friction + "friction = 0.3\nnormal = \"secondary_1_left\"\nshape = \"berg\"\n",
           "E-VEHICLE-37");
 }
@@ -309,6 +339,20 @@ TEST_CASE("an actuator pushes two bodies apart with its force", "[force_elements
   const std::vector<double> yaw = rest["car.bogie_1.yaw_rad"];
   CHECK(std::fabs(yaw.back()) > 1e-6);
   CHECK(yaw.back() == Approx(yaw.front()).epsilon(1e-6));
+}
+
+TEST_CASE("a damper that has no force at small rates leaves the linear motions alone",
+          "[force_elements]") {
+  const auto speed = [](const std::string& element) {
+    const auto found =
+        critical_speed_between(scene_with_elements(element, "manchester_straight", {}), 10., 190.);
+    REQUIRE(found);
+    return found->speed;
+  };
+  CHECK(speed(element_on_bogie(
+            "own", kAlong + "type = \"nonlinear_damper\"\ntable = [[0.0, 0.0], [0.01, 0.0], [0.05, "
+                            "5e3]]\nseries_stiffness_n_per_m = 6e6\n")) ==
+        Approx(speed("")).epsilon(1e-9));
 }
 
 TEST_CASE("wrong actuators are refused", "[force_elements]") {

@@ -147,6 +147,9 @@ void reverse(RunnerForceElement& e) {
 bool is_along(const RunnerForceElement& e, int axis) {
   return e.along == RunnerForceElement::Along::axis && e.axis == axis;
 }
+bool is_about(const RunnerForceElement& e, int axis) {
+  return e.along == RunnerForceElement::Along::about_axis && e.axis == axis;
+}
 
 RunnerElement mirrored(RunnerElement e) {
   e.point_a[1] = -e.point_a[1];
@@ -157,7 +160,7 @@ RunnerElement mirrored(RunnerElement e) {
 RunnerForceElement mirrored(RunnerForceElement e) {
   e.point_a[1] = -e.point_a[1];
   e.point_b[1] = -e.point_b[1];
-  if (is_along(e, 1)) reverse(e);
+  if (is_along(e, 1) || is_about(e, 0) || is_about(e, 2)) reverse(e);
   return e;
 }
 
@@ -171,7 +174,8 @@ RunnerElement placed(RunnerElement e, const BogiePlace& place) {
 RunnerForceElement placed(RunnerForceElement e, const BogiePlace& place) {
   e.point_a = place.at(e.point_a);
   e.point_b = place.at(e.point_b);
-  if (place.turned && (is_along(e, 0) || is_along(e, 1))) reverse(e);
+  const bool level = is_along(e, 0) || is_along(e, 1) || is_about(e, 0) || is_about(e, 1);
+  if (place.turned && level) reverse(e);
   return e;
 }
 
@@ -226,18 +230,33 @@ void RunnerParts::add_part(const RunnerPart& part, const PartNames& names,
   own.b = names.b;
 }
 
+/// Whether an element has a force along z, or along its line, that follows its deflection.
+bool can_press(const RunnerElement& e) {
+  return e.kind == RunnerElement::Kind::mid_frame ? e.stiffness[2] > 0.
+         : e.kind == RunnerElement::Kind::line    ? e.stiffness[0] > 0.
+                                                  : false;
+}
+
 void RunnerParts::find_pressers(const Table& t, const std::string& key) {
   for (const Part& part : pressed_) {
-    int& presser = runner_.force_elements[part.element].pressed_by;
-    for (auto wanted = part.pressers.rbegin(); wanted != part.pressers.rend(); ++wanted)
-      for (std::size_t i = 0; i < runner_.elements.size(); ++i)
-        if (runner_.elements[i].name == *wanted) presser = static_cast<int>(i);
-    if (presser < 0)
+    RunnerForceElement& pressed = runner_.force_elements[part.element];
+    for (const std::string& wanted : part.pressers) {
+      int found = 0;
+      for (std::size_t i = first_; i < runner_.elements.size(); ++i) {
+        if (runner_.elements[i].name != wanted || !can_press(runner_.elements[i])) continue;
+        pressed.pressed_by = static_cast<int>(i);
+        ++found;
+      }
+      if (found == 1) break;
+      pressed.pressed_by = -1;
+      if (found > 1) break;
+    }
+    if (pressed.pressed_by < 0)
       t.refuse(key, "E-VEHICLE-34",
-               fmt::format("normal = \"{}\" of element {} is not an element that presses along z "
-                           "or along a line; expected the name of a spring, a bushing, a "
-                           "shear_spring, an air_spring or a support",
-                           part.by, runner_.force_elements[part.element].name));
+               fmt::format("normal = \"{}\" of element {} is not one element with a stiffness "
+                           "along z or along its line; expected the name of one spring, bushing, "
+                           "shear_spring, air_spring or support",
+                           part.by, pressed.name));
   }
 }
 

@@ -1,5 +1,7 @@
 #include <fmt/core.h>
 
+#include <cmath>
+
 #include "scene/vehicle_read.h"
 
 // Elements of a vehicle that are not linear.
@@ -27,6 +29,13 @@ void read_curve(const Table& t, RunnerForceElement& e) {
   const auto slope = [&](std::size_t i) {
     return (read[i + 3] - read[i + 1]) / (read[i + 2] - read[i]);
   };
+  for (std::size_t i = 0; i < read.size(); i += 2) {
+    if (!(std::fabs(read[i]) <= 1e3) || !(std::fabs(read[i + 1]) <= 1e9))
+      wrong(fmt::format("the row [{:.15g}, {:.15g}] beyond 1000 or 1e9 N", read[i], read[i + 1]));
+    if (i + 2 < read.size() && !(slope(i) <= 1e13))
+      wrong(fmt::format("a slope of {:.6g} from [{:.15g}, {:.15g}] on, above 1e13", slope(i),
+                        read[i], read[i + 1]));
+  }
   e.slope_behind = slope(read.size() - 4);
   e.slope_before = slope(0);
   if (read[0] >= 0. && read[1] == 0.) {  // the other direction

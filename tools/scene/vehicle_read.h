@@ -73,7 +73,7 @@ struct PartNames {
 /// Adds parts to a runner, and at its end finds the elements that press some of them.
 class RunnerParts {
  public:
-  explicit RunnerParts(Runner& runner) : runner_(runner) {}
+  explicit RunnerParts(Runner& runner) : runner_(runner), first_(runner.elements.size()) {}
   /// @param pressers  names that the element which presses it may have, the first one first
   void add_part(const RunnerPart& part, const PartNames& names, std::vector<std::string> pressers);
   /// @param key  of `t`, to name where one is not found
@@ -86,6 +86,7 @@ class RunnerParts {
     std::vector<std::string> pressers;
   };
   Runner& runner_;
+  std::size_t first_;  // of its own linear elements
   std::vector<Part> pressed_;
 };
 

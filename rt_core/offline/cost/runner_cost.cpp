@@ -73,8 +73,10 @@ Cost elements_cost(const RunnerModel& runner) {
     constexpr std::int64_t evaluations = 4 * kNewtonSweeps + 2;
     sum = sum + evaluations * table_cost(e.curve.points);
     if (e.law != ElementLaw::spring)
-      sum = sum + evaluations * branching(90, 30) + table_cost(e.value.points) +
-            table_cost(runner.travel.rows) +
+      sum = sum +
+            evaluations *
+                (e.law == ElementLaw::exponential ? branching(2500, 800) : branching(150, 50)) +
+            table_cost(e.value.points) + table_cost(runner.travel.rows) +
             work(4 * std::int64_t{runner.size} + 80, 4 * std::int64_t{runner.size} + 40);
   }
   return sum;

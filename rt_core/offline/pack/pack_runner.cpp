@@ -52,7 +52,10 @@ Eigen::MatrixXd element_rows(const RunnerMatrices& m, Eigen::Index size) {
     Eigen::VectorXd& row = all.emplace_back(Eigen::VectorXd::Zero(size));
     row.head(motions) = e.row;
     if (e.series >= 0) row[motions + e.series] = 1.;
-    if (e.law.loaded != 0) all.emplace_back(Eigen::VectorXd::Zero(size)).head(motions) = e.load;
+    if (e.law.loaded == 0) continue;
+    Eigen::VectorXd& load = all.emplace_back(Eigen::VectorXd::Zero(size));
+    load.head(motions) = e.load;
+    if (e.series >= 0) load[motions + e.series] = -1.;
   }
   Eigen::MatrixXd rows(size, static_cast<Eigen::Index>(all.size()));
   for (std::size_t i = 0; i < all.size(); ++i) rows.col(static_cast<Eigen::Index>(i)) = all[i];
@@ -193,7 +196,6 @@ void PackedModel::add_runner(const Track& track, const RailVehicle& vehicle) {
   std::vector<double> own(static_cast<std::size_t>(packed.element_coordinates));
   for (std::int32_t j = 0; j < packed.force_elements; ++j) {
     const ForceElement& e = packed.force_element[j];
-    if (!has_corners(e.law)) continue;
     double& met = compliance.diagonal()[kMotions * packed.wheelsets + e.coordinate];
     std::swap(own[static_cast<std::size_t>(e.coordinate)], met);
   }

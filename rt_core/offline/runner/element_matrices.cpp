@@ -82,7 +82,7 @@ void add_load(const Runner& runner, const RunnerElement& presser, RunnerMatrices
   constexpr auto z = static_cast<std::size_t>(index_of(BodyMotion::z));
   const bool line = is_line(presser);
   const double preload = line ? presser.preload[0] : presser.preload[z];
-  const double sign = line || preload >= 0. ? -1. : 1.;
+  const double sign = line || preload >= 0. || presser.presses_only ? -1. : 1.;
   made.law.loaded = 1;
   made.law.load_stiffness = line ? presser.stiffness[0] : presser.stiffness[z];
   made.law.load_at_rest = line ? -preload : std::fabs(preload);
@@ -96,11 +96,14 @@ void add_load(const Runner& runner, const RunnerElement& presser, RunnerMatrices
 void add_pressing(const RunnerElement& presser, RunnerMatrices::Element& made) {
   constexpr auto z = static_cast<std::size_t>(index_of(BodyMotion::z));
   const double k = presser.stiffness[z], preload = presser.preload[z];
-  const bool from_above = preload >= 0.;
+  if (preload < 0.)
+    refuse("E-SUSPENSION-08",
+           "support " + presser.name + " would carry " + std::to_string(preload) +
+               " N where the vehicle stands; expected 0 or more: its first body stands on the "
+               "second");
   made.law.preload = preload;
-  made.law.curve.slope_before = from_above ? k : 0.;
-  made.curve = {preload / k - (from_above ? presser.clearance : -presser.clearance), preload,
-                from_above ? 0. : k};
+  made.law.curve.slope_before = k;
+  made.curve = {preload / k - presser.clearance, preload, 0.};
 }
 
 /// The slope of an element where it is at rest.
@@ -150,6 +153,9 @@ RunnerMatrices::Element made_element(const Runner& runner, const RunnerForceElem
   if (e.series > 0.) {
     made.series = static_cast<int>(m.series.size());
     m.series.push_back({made.row, e.series, slope_at_rest(made)});
+    made.law.loaded = 1;
+    made.law.load_stiffness = e.series;
+    made.load = made.row;
     made.row.setZero();
   }
   return made;

@@ -31,13 +31,16 @@ MatrixXd free_motions(const LinearRunning& l) {
 /// coordinates free_motions() and with forces over sqrt(k).
 Eigen::VectorXcd eigenvalues(const LinearRunning& l) {
   const MatrixXd x = free_motions(l);
-  const Index n = x.cols(), series = static_cast<Index>(l.series.size());
+  std::vector<RunnerMatrices::Series> damped;  // one that does not damp at rest has no force
+  for (const RunnerMatrices::Series& own : l.series)
+    if (own.damping > 0.) damped.push_back(own);
+  const Index n = x.cols(), series = static_cast<Index>(damped.size());
   MatrixXd A = MatrixXd::Zero(2 * n + series, 2 * n + series);
   A.block(0, n, n, n).setIdentity();
   A.block(n, 0, n, n) = -(x.transpose() * l.stiffness * x);
   A.block(n, n, n, n) = -(x.transpose() * l.damping * x);
   for (Index i = 0; i < series; ++i) {
-    const RunnerMatrices::Series& s = l.series[static_cast<std::size_t>(i)];
+    const RunnerMatrices::Series& s = damped[static_cast<std::size_t>(i)];
     const VectorXd row = std::sqrt(s.stiffness) * (x.transpose() * s.row);
     A.block(n, 2 * n + i, n, 1) = -row;
     A.block(2 * n + i, n, 1, n) = row.transpose();

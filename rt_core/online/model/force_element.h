@@ -65,15 +65,12 @@ struct ForceElement {
   /// Of friction its limit, N or N m; under a load a coefficient, or m. Of an actuator the force
   /// along its displacement, N or N m. Of a controlled damper its damping, N s/m or N m s/rad.
   BodyForce value;
-  std::int32_t loaded;                  // 0 or 1; 0 of `berg`
-  double load_at_rest, load_stiffness;  // N, N/m
+  std::int32_t loaded;  // 0 or 1; 0 of `berg`
+  /// Of friction under a load: N, N/m. Of a damper behind a spring, whose deflection then is the
+  /// second displacement: 0, and the stiffness of that spring.
+  double load_at_rest, load_stiffness;
   double preload;  // N, the part of its force that is among the runner's `rest`
 };
-/// Whether a law has corners, at which Newton's method could go to and fro. Such an element meets
-/// its own compliance by itself (element_force_behind()).
-inline constexpr bool has_corners(ElementLaw law) noexcept {
-  return has_curve(law) || law == ElementLaw::slider;
-}
 /// Brakes of wheelsets are sliders about the axle.
 inline constexpr bool is_brake(const ForceElement& e) noexcept { return e.per_way > 0.; }
 

@@ -194,19 +194,25 @@ bool curve_is_valid(const RisingCurve& c) noexcept {
   for (std::int32_t i = 0; i < c.points; ++i) {
     const double *at = c.point + std::ptrdiff_t{3} * i, *next = at + 3;
     if (!is_moderate(at[0]) || !is_moderate(at[1]) || !is_not_negative(at[2])) return false;
-    if (i + 1 < c.points && !(next[0] >= at[0] && next[1] >= at[1])) return false;
+    if (i + 1 == c.points) break;
+    const double leap = at[1] + at[2] * (next[0] - at[0]) - next[1];
+    if (!(next[0] >= at[0]) || !(std::fabs(leap) <= 1e-9 * (1. + std::fabs(next[1])))) return false;
   }
   return true;
 }
 
 bool element_is_valid(const Model& m, const ForceElement& e) noexcept {
-  if (!is_moderate(e.preload) || (e.loaded != 0 && !is_friction(e.law))) return false;
-  if (has_curve(e.law)) return curve_is_valid(e.curve) && e.per_way == 0.;
+  const bool friction = is_friction(e.law);
+  if (!is_moderate(e.preload) || !is_moderate(e.load_at_rest)) return false;
+  if (!is_not_negative(e.load_stiffness)) return false;
+  if (e.loaded != 0 && !friction && e.law != ElementLaw::damper) return false;
+  if (e.per_way != 0. && e.law != ElementLaw::slider) return false;
+  if (has_curve(e.law)) return curve_is_valid(e.curve);
   if (!force_is_valid(m, e.value)) return false;
-  if (!is_friction(e.law)) return e.per_way == 0.;
+  if (!friction) return true;
+  const bool constant = e.value.input < 0 && e.value.points == 1 && e.loaded == 0;
   return is_above_zero(e.stiffness) && is_not_negative(e.damping) && is_not_negative(e.per_way) &&
-         (e.loaded == 0 || e.law != ElementLaw::berg) && is_moderate(e.load_at_rest) &&
-         is_not_negative(e.load_stiffness);
+         (constant || e.law != ElementLaw::berg);
 }
 
 bool elements_are_valid(const Model& m, const RunnerModel& r, const RunnerCounts& before) noexcept {

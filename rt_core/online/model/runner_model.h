@@ -149,8 +149,8 @@ struct RunnerModel : SuspendedModel {
   const double* rod_row;         // [rods][size] elongation of each
   const double* reaction;        // [1 + rods][size] force ahead of the drive, then the tension of
                                  // each rod, by a unit force along each coordinate
-  /// Compliance of each displacement of a force element by its own force, if its law has corners;
-  /// 0 of the others and of loads.
+  /// Compliance of each displacement of a force element by its own force, which its law meets by
+  /// itself; 0 of loads.
   const double* element_compliance;
   /// [interface_size()][interface_size()] theta times the part of the inverse for the wheelsets'
   /// motions, then for the displacements of force elements without `element_compliance`.

@@ -180,7 +180,7 @@ struct Outputs {
   /// The way of the first body of rail vehicles that roll freely, m, and its speed, m/s; else 0.
   double runner_way[kMaxRunners], runner_speed[kMaxRunners];
   double rod_tension[kMaxRunnerRods];  // N, of the rigid rods of rail vehicles
-  /// N or N m, of their force elements on the first body; of lines tension.
+  /// N or N m, of their force elements on the first body; of lines how they push their ends apart.
   double element_force[kMaxRunnerForceElements];
   /// The point of the rail under each external wheel at the frame's end.
   bool external_on_rail[kMaxExternalWheels];

@@ -1,5 +1,7 @@
 #include "online/runner/element_law.h"
 
+#include <cmath>
+
 #include "online/math/decay.h"
 
 namespace railstep {
@@ -33,13 +35,13 @@ Friction slider(const ForceElement& e, const ElementStep& at, double z, double l
   return {held, e.stiffness + e.damping * at.rate, 0.};
 }
 
-/// dF/dz = k (1 - F sign / limit), in closed form over the step.
-Friction exponential(const ForceElement& e, const ElementStep& at, double z,
+/// dF/dz = k (1 - F sign / limit), in closed form over a way of the step in the sign's direction.
+Friction exponential(const ForceElement& e, const ElementStep& at, double sign, double along,
                      double limit) noexcept {
   if (!(limit > 0.)) return {0., 0., 0.};
-  const double sign = z < 0. ? -1. : 1., before = within(at.memory[1], limit),
-               way = sign * z * e.stiffness / limit, left = decay(way),
-               missing = sign * limit - before;
+  const double before = within(at.memory[1], limit), way = along * e.stiffness / limit,
+               left = decay(way), missing = sign * limit - before;
+  if (!(left > 0.)) return {sign * limit, 0., sign};
   const double clipped = before != at.memory[1] ? (before < 0. ? -left : left) : 0.;
   return {sign * limit - missing * left, (limit - sign * before) / limit * e.stiffness * left,
           sign * (1. - left) - missing * left * way / limit + clipped};
@@ -67,7 +69,7 @@ Friction berg(const ForceElement& e, const ElementStep& at, double z, double lim
 Friction friction(const ForceElement& e, const ElementStep& at, double z, double limit) noexcept {
   switch (e.law) {
     case ElementLaw::exponential:
-      return exponential(e, at, z, limit);
+      return z < 0. ? exponential(e, at, -1., -z, limit) : exponential(e, at, 1., z, limit);
     case ElementLaw::berg:
       return berg(e, at, z, limit);
     default:
@@ -76,22 +78,86 @@ Friction friction(const ForceElement& e, const ElementStep& at, double z, double
   return slider(e, at, z, limit);
 }
 
-/// A curve over rate z + rate_at_zero, behind a compliance: each piece of it is straight in q, too.
-ElementForce curve_behind(const RisingCurve& curve, double rate, double rate_at_zero,
-                          double compliance, double q) noexcept {
+// The z of q = z - compliance F(z) for each law.
+
+/// A curve over rate z + rate_at_zero: each piece of it is straight in q, too.
+double on_curve(const RisingCurve& curve, double rate, double rate_at_zero, double compliance,
+                double q) noexcept {
+  const auto z_at = [&](std::int32_t i) noexcept {
+    return (curve.point[std::ptrdiff_t{3} * i] - rate_at_zero) / rate;
+  };
   const auto q_at = [&](std::int32_t i) noexcept {
-    const double* const point = curve.point + std::ptrdiff_t{3} * i;
-    return (point[0] - rate_at_zero) / rate + compliance * point[1];
+    return z_at(i) + compliance * curve.point[std::ptrdiff_t{3} * i + 1];
   };
   std::int32_t low = 0, high = curve.points;
   while (high - low > 1) {
     const std::int32_t middle = low + (high - low) / 2;
     (q_at(middle) <= q ? low : high) = middle;
   }
-  const double *const point = curve.point + std::ptrdiff_t{3} * low, beyond = q - q_at(low);
-  const double slope = (beyond < 0. ? curve.slope_before : point[2]) * rate;
-  const double behind = slope / (1. + compliance * slope);
-  return {-(point[1] + behind * beyond), -behind, 0.};
+  const double beyond = q - q_at(low);
+  const double slope =
+      (beyond < 0. ? curve.slope_before : curve.point[std::ptrdiff_t{3} * low + 2]) * rate;
+  return z_at(low) + beyond / (1. + compliance * slope);
+}
+
+double on_slider(const ForceElement& e, const ElementStep& at, double limit, double compliance,
+                 double q) noexcept {
+  const double slope = e.stiffness + e.damping * at.rate,
+               z = (q - compliance * e.damping * at.rate_at_zero) / (1. + compliance * slope),
+               held = slope * z + e.damping * at.rate_at_zero;
+  return held > limit ? q - compliance * limit : held < -limit ? q + compliance * limit : z;
+}
+
+/// By Newton's method from below: along the way from the last force on the friction is concave.
+double on_exponential(const ForceElement& e, const ElementStep& at, double limit, double compliance,
+                      double q) noexcept {
+  if (!(limit > 0.)) return q;
+  constexpr int kCap = 24;
+  const double before = within(at.memory[1], limit), sign = q < compliance * before ? -1. : 1.,
+               beyond = sign * q - compliance * limit;
+  double way = beyond > 0. ? beyond : 0.;
+  for (int i = 0; i < kCap; ++i) {
+    const Friction own = exponential(e, at, sign, way, limit);
+    const double step =
+        (sign * q - way - compliance * sign * own.force) / (1. + compliance * own.slope);
+    if (!(step > 1e-15 * way)) break;
+    way += step;
+  }
+  return sign * way;
+}
+
+/// On a branch way + compliance m way / (m / k + way) = reach, a quadratic.
+double on_berg(const ForceElement& e, const ElementStep& at, double limit, double compliance,
+               double q) noexcept {
+  const double sign = q < compliance * at.memory[3] ? -1. : 1.;
+  const Branch branch = branch_of(at, sign);
+  const double since = sign * branch.way - 1., missing = limit - sign * branch.from,
+               soft = missing / e.stiffness, reach = sign * (q - compliance * branch.from) + since,
+               b = soft + compliance * missing - reach, root = std::sqrt(b * b + 4. * reach * soft);
+  if (!(root > 0.) || !(reach > 0.)) return q - compliance * branch.from;
+  const double way = b > 0. ? 2. * reach * soft / (b + root) : .5 * (root - b);
+  return sign * (way - since);
+}
+
+double displacement_behind(const ForceElement& e, const ElementStep& at, double compliance,
+                           double q, double load) noexcept {
+  switch (e.law) {
+    case ElementLaw::spring:
+      return on_curve(e.curve, 1., 0., compliance, q);
+    case ElementLaw::damper:
+      return on_curve(e.curve, at.rate, at.rate_at_zero, compliance, q);
+    case ElementLaw::actuator:
+      return q + compliance * at.value;
+    case ElementLaw::controlled:
+      return (q - compliance * at.value * at.rate_at_zero) / (1. + compliance * at.value * at.rate);
+    case ElementLaw::exponential:
+      return on_exponential(e, at, limit_of(e, at, load).value, compliance, q);
+    case ElementLaw::berg:
+      return on_berg(e, at, limit_of(e, at, load).value, compliance, q);
+    case ElementLaw::slider:
+      break;
+  }
+  return on_slider(e, at, limit_of(e, at, load).value, compliance, q);
 }
 
 }  // namespace
@@ -116,16 +182,10 @@ ElementForce element_force(const ForceElement& e, const ElementStep& at, double 
 
 ElementForce element_force_behind(const ForceElement& e, const ElementStep& at, double compliance,
                                   double q, double load) noexcept {
-  if (e.law == ElementLaw::spring) return curve_behind(e.curve, 1., 0., compliance, q);
-  if (e.law == ElementLaw::damper)
-    return curve_behind(e.curve, at.rate, at.rate_at_zero, compliance, q);
-  if (!has_corners(e.law)) return element_force(e, at, q, load);
-  const Limit limit = limit_of(e, at, load);
-  const double slope = e.stiffness + e.damping * at.rate, soft = 1. + compliance * slope,
-               held = (slope * q + e.damping * at.rate_at_zero) / soft;
-  if (held >= limit.value) return {-limit.value, 0., -limit.load_slope};
-  if (held <= -limit.value) return {limit.value, 0., limit.load_slope};
-  return {-held, -slope / soft, 0.};
+  const double z = displacement_behind(e, at, compliance, q, load);
+  const ElementForce own = element_force(e, at, z, load);
+  const double part = 1. / (1. - compliance * own.slope);
+  return {own.force, part * own.slope, part * own.load_slope};
 }
 
 void keep_element(const ForceElement& e, const ElementStep& at, double z, double load,

@@ -15,8 +15,9 @@ struct ElementForce {
 ElementForce element_force(const ForceElement& e, const ElementStep& at, double z,
                            double load) noexcept;
 
-/// The force of an element whose law has corners behind its own compliance, exactly: the z is such
-/// that q = z - compliance F(z). Of a law without corners element_force().
+/// The force of an element behind its own compliance: that of the z with q = z - compliance F(z).
+/// Newton's method could go to and fro at the corners of laws, and over slopes that are steep
+/// against the compliance.
 /// @param q  m or rad, as z; slopes are over it
 ElementForce element_force_behind(const ForceElement& e, const ElementStep& at, double compliance,
                                   double q, double load) noexcept;

@@ -93,9 +93,8 @@ void find_elements(const RunnerStage& at, const State& s, const Workspace& w, co
     start[i] += from;
     if (e.law != ElementLaw::spring)
       step.rate_at_zero = e.per_way * frame.speed - at.rate * from + moving.rate_at_zero(i);
-    if (has_corners(e.law))
-      start[i] -= r.element_compliance[i] *
-                  element_force(e, step, start[i], e.loaded != 0 ? start[i + 1] : 0.).force;
+    start[i] -= r.element_compliance[i] *
+                element_force(e, step, start[i], e.loaded != 0 ? start[i + 1] : 0.).force;
   }
 }
 
@@ -157,6 +156,9 @@ StandingElement standing_element(const Model& model, const RunnerModel& runner, 
   }
   const double from = is_friction(e.law) ? z - step.memory[0] : z;
   const double load = e.loaded != 0 ? moved(e.coordinate + 1) : 0.;
+  // Nothing damps the rate of a displacement without mass: the spring's force is the damper's.
+  if (e.law == ElementLaw::damper && e.loaded != 0)
+    return {step, z, z, load, {-e.load_stiffness * load, 0., 0.}};
   return {step, z, from, load, element_force(e, step, from, load)};
 }
 

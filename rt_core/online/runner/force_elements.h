@@ -7,8 +7,8 @@ namespace railstep {
 // The force elements of a runner, whose laws Newton's method meets beside those of its wheelsets.
 
 /// Displacements of a runner's force elements at the contacts' instant, those of friction from its
-/// memory on, and in the workspace what their laws need of this step. Those of laws with corners
-/// are without what their own force does, see element_force_behind().
+/// memory on, and in the workspace what their laws need of this step. They are
+/// without what their own force does, see element_force_behind().
 /// @param free, start  [element_coordinates] out
 void find_elements(const RunnerStage& at, const State& s, const Workspace& w, const double* u,
                    double* free, double* start) noexcept;

@@ -147,6 +147,59 @@ TEST_CASE("slopes of friction are its derivatives", "[element_law]") {
     }
 }
 
+TEST_CASE("an element behind its own compliance has the force of the displacement it has then",
+          "[element_law]") {
+  const std::vector<double> gaps = {-.01, 0., 0., .02, 0., 2e7},
+                            yaw = {-.02, -12e3, 6e5, .02, 12e3, 0.};
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> any(-1., 1.);
+  double worst = 0.;
+  for (int trial = 0; trial < 20'000; ++trial) {
+    const auto law = static_cast<ElementLaw>(trial % kElementLaws);
+    ForceElement e{};
+    e.law = law;
+    e.curve = {2, law == ElementLaw::spring ? 2e7 : 0.,
+               law == ElementLaw::spring ? gaps.data() : yaw.data()};
+    e.stiffness = kStiff;
+    e.damping = law == ElementLaw::slider ? 200. : 0.;
+    const double before = 1e3 * any(random), way = 1e-3 * any(random),
+                 missing = kLimit - (way < 0. ? -before : before),
+                 after = before + missing * way / (missing / kStiff + std::fabs(way));
+    const bool berg = law == ElementLaw::berg;
+    const std::array<double, kMostElementMemory> memory = {0., before, berg ? way : 0., after};
+    const double value = law == ElementLaw::controlled ? 1e4 : kLimit;
+    const ElementStep step{memory.data(), value, 2e3, any(random)};
+    // Up to 1e4 times as soft as the element is stiff.
+    const double compliance = std::pow(10., 4. * any(random)) / kStiff,
+                 q = (2e-2 + 2. * kLimit * compliance) * any(random);
+    const ElementForce own = element_force_behind(e, step, compliance, q, 0.);
+    const double z = q + compliance * own.force;
+    const ElementForce there = element_force(e, step, z, 0.);
+    // Rounding of the displacement is a force by the slope of either side of a corner, and that of
+    // the force a displacement by the compliance.
+    const double stiffest = law == ElementLaw::spring   ? 2e7
+                            : law == ElementLaw::damper ? 6e5 * step.rate
+                                                        : 2e7;
+    const double rounding =
+        stiffest * 1e-16 * (std::fabs(q) + (1. + compliance * stiffest) * (std::fabs(z) + 1e-3)) +
+        1e-9;
+    worst = std::max(worst, std::fabs(there.force - own.force) / rounding);
+    const double small = 1e-7 * (std::fabs(q) + 1e-3);
+    const auto force = [&](double at_q) {
+      return element_force_behind(e, step, compliance, at_q, 0.).force;
+    };
+    const double left = (own.force - force(q - small)) / small,
+                 right = (force(q + small) - own.force) / small;
+    if (std::fabs(left - right) > 1e-3 / compliance) continue;  // a corner
+    CAPTURE(static_cast<int>(law), trial, q, compliance);
+    CHECK(.5 * (left + right) == Approx(own.slope).epsilon(1e-3).margin(1e-4 / compliance));
+    CHECK(own.slope <= 0.);
+    CHECK(own.slope >= -1. / compliance);
+  }
+  INFO("largest difference over rounding " << worst);
+  CHECK(worst < 50.);
+}
+
 TEST_CASE("no friction makes energy, whatever its limit does", "[element_law]") {
   constexpr int kParts = 20;
   std::mt19937 random(11);
