@@ -116,7 +116,7 @@ RunnerElement read_air_spring(const Table& t) {
 std::vector<RunnerPart> alone(const RunnerElement& element) { return {{element}}; }
 std::vector<RunnerPart> alone(const RunnerForceElement& element) { return {{element}}; }
 
-/// What reads the elements of each type, in the order of their names below.
+/// A function for each type of element, in the order of the names in read_runner_parts().
 using ReadParts = std::vector<RunnerPart> (*)(const Table& t);
 constexpr ReadParts kReadParts[] = {
     [](const Table& t) { return alone(read_line(t, true, false, false)); },

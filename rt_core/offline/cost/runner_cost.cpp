@@ -65,7 +65,7 @@ Cost newton_cost(const WheelsCost& of, std::int64_t scalars, std::int64_t n) {
          of.find + of.force + work(6 * n, 3 * n * n);
 }
 
-/// What a step needs of force elements beside their laws, once: limits, rates, memories.
+/// Cost of the laws of force elements, and of their limits, rates and memories.
 Cost elements_cost(const RunnerModel& runner) {
   Cost sum{};
   for (std::int32_t j = 0; j < runner.force_elements; ++j) {

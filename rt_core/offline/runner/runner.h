@@ -63,8 +63,8 @@ struct RunnerForceElement {
   /// t (s), value, t, value, ... of what ForceElement::value is; none: that of the input.
   std::vector<double> value = {};
   int input = -1;
-  /// Of friction the element, among the runner's linear ones, that presses its faces together: the
-  /// limit is then a coefficient. Of a spring without a curve the one that presses only. -1: none.
+  /// The linear element of the runner that presses the faces of friction together: the limit is
+  /// then a coefficient. A spring without a curve: the element that presses only. -1: none.
   int pressed_by = -1;
   [[nodiscard]] bool is_brake() const { return per_way > 0.; }
 };

@@ -15,7 +15,7 @@
 #include "online/contact/wheel.h"
 #include "online/model/progress.h"
 #include "online/runner/body_force.h"
-#include "online/runner/force_elements.h"
+#include "online/runner/runner_contact.h"
 #include "online/step/step.h"
 #include "online/track/closing.h"
 #include "online/track/moving_load.h"
@@ -300,22 +300,6 @@ void release(const RunnerModel& runner, double held, State& state) {
   for (std::int32_t b = 0; b < runner.bodies; ++b) set_acceleration(kMotions * b + x, 1.);
   for (std::int32_t i = 0; i < runner.wheelsets; ++i)
     set_acceleration(runner.wheelset[i].first + spin, 1. / runner.wheelset[i].radius);
-}
-
-/// Friction has come to its displacement in one way from rest; brakes have not slid.
-void start_elements(const Model& model, const RunnerModel& runner, State& state) {
-  std::vector<double> pose(kMostPoses);
-  const double* const poses = poses_of(model, runner, along_in(runner, state), pose.data());
-  for (std::int32_t j = 0; j < runner.force_elements; ++j) {
-    const ForceElement& e = runner.force_element[j];
-    double* const memory = state.element_memory + e.memory;
-    std::fill_n(memory, memory_of(e.law), 0.);
-    const StandingElement at = standing_element(model, runner, j, state, poses);
-    if (is_brake(e))
-      memory[0] = at.z;
-    else
-      keep_element(e, at.step, at.from_memory, at.load, memory);
-  }
 }
 
 /// Puts rail vehicles into a state. The rates are those of steady running, and those by which rails

@@ -7,7 +7,7 @@
 #include "offline/runner/element_matrices.h"
 #include "online/contact/wheel_seat.h"
 #include "online/model/progress.h"
-#include "online/runner/runner_contact.h"
+#include "online/runner/force_elements.h"
 #include "online/step/step.h"
 #include "online/track/travel.h"
 
@@ -255,6 +255,21 @@ void put_seats(const Model& model, State& state) {
             kept[1] += force[j].force * residual_between(model, force[j], seat.place[1]);
         ++wheel;
       }
+}
+
+void start_elements(const Model& model, const RunnerModel& runner, State& state) {
+  std::vector<double> pose(kMostPoses);
+  const double* const poses = poses_of(model, runner, along_in(runner, state), pose.data());
+  for (std::int32_t j = 0; j < runner.force_elements; ++j) {
+    const ForceElement& e = runner.force_element[j];
+    double* const memory = state.element_memory + e.memory;
+    std::fill_n(memory, memory_of(e.law), 0.);
+    const StandingElement at = standing_element(model, runner, j, state, poses);
+    if (is_brake(e))
+      memory[0] = at.z;
+    else
+      keep_element(e, at.step, at.from_memory, at.load, memory);
+  }
 }
 
 }  // namespace railstep

@@ -39,4 +39,8 @@ Eigen::VectorXd constraint_forces_of_acceleration(const RunnerModel& runner, dou
 /// Fills State::seat: the seats as they lie under the forces of the wheels, the rails at rest.
 void put_seats(const Model& model, State& state);
 
+/// Fills State::element_memory of a runner whose motions are in a state: friction has come to its
+/// displacement in one way from rest, and brakes have not slid.
+void start_elements(const Model& model, const RunnerModel& runner, State& state);
+
 }  // namespace railstep

@@ -62,12 +62,13 @@ struct ForceElement {
   double stiffness;     // of friction that has not slid, N/m or N m/rad
   double damping;       // of a slider beside its spring, N s/m or N m s/rad
   double per_way;       // of a brake 1/radius of its wheels, 1/m; else 0
-  /// Of friction its limit, N or N m; under a load a coefficient, or m. Of an actuator the force
-  /// along its displacement, N or N m. Of a controlled damper its damping, N s/m or N m s/rad.
+  /// The limit of friction, N or N m, or under a load its coefficient, or m; the force of an
+  /// actuator along its displacement, N or N m; the damping of a controlled damper, N s/m or N m
+  /// s/rad.
   BodyForce value;
-  std::int32_t loaded;  // 0 or 1; 0 of `berg`
-  /// Of friction under a load: N, N/m. Of a damper behind a spring, whose deflection then is the
-  /// second displacement: 0, and the stiffness of that spring.
+  std::int32_t loaded;  // 0 or 1: whether it has a second displacement; 0 of `berg`
+  /// The load of friction, N and N/m. A damper behind a spring has that spring's deflection as its
+  /// second displacement: 0, and the stiffness of the spring.
   double load_at_rest, load_stiffness;
   double preload;  // N, the part of its force that is among the runner's `rest`
 };

@@ -122,7 +122,7 @@ TEST_CASE("slopes of friction are its derivatives", "[element_law]") {
       e.loaded = 1;
       e.load_at_rest = 1e4;
       e.load_stiffness = 1e6;
-      // Of Berg's friction an end of a branch as its law has it.
+      // The state of Berg's friction is an end of a branch as its law has it.
       const double before = 1e3 * any(random), way = 1e-3 * any(random),
                    missing = kLimit - (way < 0. ? -before : before),
                    after = before + missing * way / (missing / kStiff + std::fabs(way));
