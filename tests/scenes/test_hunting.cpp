@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "answer/scene_running.h"
+#include "online/math/pi.h"
 #include "support/coned_wheelset.h"
-#include "support/pi.h"
 #include "support/scene_run.h"
 
 using namespace railstep;

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "online/math/pi.h"
 #include "support/bad_input.h"
-#include "support/pi.h"
 #include "support/scene_run.h"
 
 using namespace railstep;

@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "online/math/dual.h"
+#include "online/math/pi.h"
 #include "online/math/scalar.h"
 #include "online/patch/kalker.h"
 
@@ -120,9 +121,9 @@ CreepPair<Real> polach(const CreepPatch& p, const Creepages<Real>& c) noexcept {
     const Real x = p.kalker.c11 * c.along, y = p.kalker.c22 * c.across;
     stiffness = sqrt((x * x + y * y) / plain);
   }
-  const Real gradient = (.25 * M_PI * p.shear * area / p.limit) * stiffness * slip;
+  const Real gradient = (.25 * kPi * p.shear * area / p.limit) * stiffness * slip;
   const Real force =
-      -(2. * p.limit / M_PI) * (gradient / (1. + gradient * gradient) + arc_tangent(gradient));
+      -(2. * p.limit / kPi) * (gradient / (1. + gradient * gradient) + arc_tangent(gradient));
   // Spin.
   const double more = 1. + 6.3 * (1. - falling_exponential(a / b));
   const Real size = value_of(across) < 0. ? -across : across;

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "online/math/pi.h"
 #include "online/math/scalar.h"
 
 namespace railstep {
@@ -27,8 +28,8 @@ struct Stiffness {
 Stiffness stiffness_of(const CreepPatch& p) noexcept {
   const double a = p.half_length, b = p.half_width;
   return {3. * p.shear * p.kalker.c11 / (8. * a), 3. * p.shear * p.kalker.c22 / (8. * a),
-          4. * p.shear * p.kalker.c23 / (M_PI * a * square_root(a / b)),
-          2. * p.limit / (M_PI * a * b)};
+          4. * p.shear * p.kalker.c23 / (kPi * a * square_root(a / b)),
+          2. * p.limit / (kPi * a * b)};
 }
 
 void begin(const CreepPatch& p, int strips, Strips& s) noexcept {

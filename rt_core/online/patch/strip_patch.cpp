@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "online/math/pi.h"
 #include "online/math/scalar.h"
 
 namespace railstep {
@@ -42,7 +43,7 @@ inline Near near_of(double l2, double y2) noexcept {
     sum += power * c * c;
   }
   const double per = 1. / a, rest = .25 * c * c * per;  // a less rest is the next mean
-  const double over = .5 * M_PI * per * (1. + rest * per);
+  const double over = .5 * kPi * per * (1. + rest * per);
   return {2. * over * (sum + 2. * power * rest * rest), over};
 }
 
@@ -85,14 +86,14 @@ PatchForce patch_force(const StripPatch& patch, double approach) noexcept {
     wet += terms.slope[i] > 0. ? 1. : 0.;
   }
   if (!(squares > 0.) || !(approach > patch.collocation.gap)) return found;
-  const double I1 = .5 * M_PI * squares * patch.width, I2 = near * patch.width;
+  const double I1 = .5 * kPi * squares * patch.width, I2 = near * patch.width;
   const double held = approach - patch.collocation.gap;
-  found.normal = .5 * M_PI * kOfModulus * patch.modulus * held * I1 / I2;
+  found.normal = .5 * kPi * kOfModulus * patch.modulus * held * I1 / I2;
   found.stiffness = found.normal * (1. / held + longer * (wet / squares - near_slope / near));
   found.half_length = square_root(longer * approach);  // at the point of least gap
   found.pressure = found.normal * found.half_length / I1;
   found.centre = patch.width * moment / squares;
-  found.half_width = 2. * area * patch.width / (M_PI * found.half_length);
+  found.half_width = 2. * area * patch.width / (kPi * found.half_length);
   return found;
 }
 

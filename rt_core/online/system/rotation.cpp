@@ -2,14 +2,13 @@
 
 #include <cstdint>
 
+#include "online/math/pi.h"
 #include "online/math/scalar.h"
 #include "online/math/sine.h"
 
 namespace railstep {
 
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 /// q0 (w, v), normalised to unit length.
 void product(const double* q0, double w, const double* v, double* q1) noexcept {

@@ -2,14 +2,13 @@
 
 #include <cmath>
 
+#include "online/math/pi.h"
 #include "online/math/search.h"
 #include "online/math/sine.h"
 
 namespace railstep {
 
 namespace {
-
-constexpr double kPi = 3.141592653589793238;
 
 /// The part of the change between two rows at the part x of the way between them, its derivative
 /// over x, and its integrals from 0.

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "offline/math/sparse.h"
+#include "online/math/pi.h"
 #include "support/beams.h"
-#include "support/pi.h"
 
 using namespace railstep;
 using Catch::Matchers::WithinAbs;

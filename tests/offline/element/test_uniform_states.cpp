@@ -4,8 +4,8 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "online/math/pi.h"
 #include "support/beams.h"
-#include "support/pi.h"
 
 using namespace railstep;
 using Catch::Matchers::WithinAbs;

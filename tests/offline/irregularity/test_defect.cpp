@@ -3,7 +3,7 @@
 #include <stdexcept>
 
 #include "offline/irregularity/defect.h"
-#include "support/pi.h"
+#include "online/math/pi.h"
 
 using namespace railstep;
 

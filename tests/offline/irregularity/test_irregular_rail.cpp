@@ -8,8 +8,8 @@
 #include "offline/pack/pack.h"
 #include "offline/pack/time_schemes.h"
 #include "offline/start/start.h"
+#include "online/math/pi.h"
 #include "online/step/step.h"
-#include "support/pi.h"
 
 using namespace railstep;
 

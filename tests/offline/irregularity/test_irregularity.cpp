@@ -8,7 +8,7 @@
 #include "offline/irregularity/rails.h"
 #include "offline/irregularity/random.h"
 #include "offline/irregularity/sincos.h"
-#include "support/pi.h"
+#include "online/math/pi.h"
 
 using namespace railstep;
 

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "offline/section/saint_venant.h"
+#include "online/math/pi.h"
 #include "section/lopsided.h"
-#include "support/pi.h"
 #include "support/profiles.h"
 #include "support/program.h"
 #include "support/random_outlines.h"

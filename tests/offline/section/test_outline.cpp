@@ -7,7 +7,7 @@
 #include "offline/section/outline.h"
 #include "offline/section/outline_mirror.h"
 #include "offline/section/rectangles.h"
-#include "support/pi.h"
+#include "online/math/pi.h"
 #include "support/profiles.h"
 
 using namespace railstep;

@@ -9,7 +9,7 @@
 #include "offline/section/quadratic_elements.h"
 #include "offline/section/saint_venant.h"
 #include "offline/section/section_mesh.h"
-#include "support/pi.h"
+#include "online/math/pi.h"
 
 using namespace railstep;
 

@@ -9,7 +9,7 @@
 #include "offline/analysis/damped.h"
 #include "offline/analysis/modes.h"
 #include "offline/analysis/statics.h"
-#include "support/pi.h"
+#include "online/math/pi.h"
 #include "support/sections.h"
 
 using namespace railstep;

@@ -12,9 +12,9 @@
 #include "offline/analysis/statics.h"
 #include "offline/pack/pack.h"
 #include "offline/pack/time_schemes.h"
+#include "online/math/pi.h"
 #include "online/step/step.h"
 #include "online/track/line.h"
-#include "support/pi.h"
 #include "support/sections.h"
 
 using namespace railstep;

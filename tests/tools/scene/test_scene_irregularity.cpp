@@ -13,7 +13,7 @@
 #include "build/build_irregularity.h"
 #include "offline/contact/hertz.h"
 #include "offline/receptance/full_order.h"
-#include "support/pi.h"
+#include "online/math/pi.h"
 #include "support/scene_run.h"
 
 using namespace railstep;
