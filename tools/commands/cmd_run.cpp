@@ -10,9 +10,11 @@
 #include <string>
 #include <vector>
 
+#include "answer/assessment.h"
 #include "commands/command.h"
 #include "commands/options.h"
 #include "online/beam/kernels.h"
+#include "report/assessment_report.h"
 #include "report/drawing.h"
 #include "report/run_report.h"
 #include "report/vtk_record.h"
@@ -38,7 +40,7 @@ struct RunOptions {
   std::string model;            // full, condensed; empty: as the scene says
   std::vector<std::string> overrides;
   std::optional<double> step, duration;  // s
-  bool json = false;
+  bool assess = false, json = false;
 };
 
 AnyScene scene_of(const RunOptions& o) {
@@ -158,6 +160,22 @@ std::optional<VtkRecord> vtk_record(const RunOptions& o, const AnyScene* scene,
   return std::make_optional<VtkRecord>(*track, run, o.vtk, frames);
 }
 
+/// The running behaviour of a scene's rail vehicles, for --assess and reports.
+std::vector<AssessedVehicle> assessed(const RunOptions& o, const Scene* track,
+                                      const Simulation& run, const RunRecord& record) {
+  const bool wanted = o.assess || (!o.report.empty() && track != nullptr);
+  if (!wanted || record.first_bad_unknown >= 0) return {};
+  return assess(*track, run, record);
+}
+
+void want_vehicles(const RunOptions& o, const Scene* track) {
+  if (!o.assess || (track != nullptr && !track->rail_vehicles.empty())) return;
+  throw InputError("E-RUN-08", fmt::format("--assess is of the running behaviour of vehicles, and "
+                                           "{} is not a scene with one in space; expected a "
+                                           "scene with a [[vehicle]] of type \"rail_vehicle\"",
+                                           o.input));
+}
+
 /// The inputs of the frames, from --inputs; nothing without it.
 FrameInputs inputs_of(const RunOptions& o, const Simulation& run) {
   if (o.inputs.empty()) return {};
@@ -193,6 +211,7 @@ Exit run(const RunOptions& o) {
     remarks.note(constants_note(*track));
     remarks.note(lopsided_note(*track));
   }
+  want_vehicles(o, track);
   if (!o.report.empty()) need_gnuplot();
   std::optional<Trace> trace;
   if (!o.trace.empty()) trace.emplace(o.trace, simulation->columns());
@@ -211,7 +230,7 @@ Exit run(const RunOptions& o) {
   {
     Progress bar(has_energies(*simulation) ? 2 * frames : frames);
     record = simulate(
-        *simulation, frames, rows, !o.report.empty(),
+        *simulation, frames, rows, !o.report.empty() || o.assess,
         [&](std::int64_t done) {
           bar(done);
           if (vtk) vtk->frame(done);
@@ -224,10 +243,12 @@ Exit run(const RunOptions& o) {
   if (trace) trace->finish();
   if (vtk) vtk->finish();
   if (recording) write_recording(o.record, *simulation, *recording);
+  const std::vector<AssessedVehicle> behaviour = assessed(o, track, *simulation, record);
   if (!o.report.empty())
-    write_file(o.report,
-               run_report(std::filesystem::path(o.input).stem().string(), *simulation, record));
+    write_file(o.report, run_report(std::filesystem::path(o.input).stem().string(), *simulation,
+                                    record, behaviour_html(behaviour)));
   nlohmann::ordered_json result = to_json(*simulation, record, energy);
+  if (o.assess) result["assessment"] = to_json(behaviour);
   remarks.note(energy_note(energy));
   remarks.note(depth_note(record));
   if (record.first_bad_unknown >= 0)
@@ -237,6 +258,7 @@ Exit run(const RunOptions& o) {
     print_json(result);
   else
     print_run_table(result);
+  if (o.assess && !o.json) fmt::print("{}", behaviour_text(behaviour));
   return verdict(record, remarks);
 }
 
@@ -269,6 +291,8 @@ Command add_run(CLI::App& app) {
       ->check(within(std::int64_t{1}, std::int64_t{1} << 40))
       ->needs(record);
   add_overrides(*sub, o->overrides);
+  sub->add_flag("--assess", o->assess,
+                "running behaviour of vehicles in space by EN 14363, ride by EN 12299");
   sub->add_flag("--json", o->json, "one JSON object on stdout");
   sub->footer(
       "The energies come from a second pass over the run; of a model file, which has no matrices,\n"

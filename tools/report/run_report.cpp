@@ -155,7 +155,8 @@ std::string histogram_script(const RunRecord& record) {
 
 }  // namespace
 
-std::string run_report(const std::string& title, const Simulation& run, const RunRecord& record) {
+std::string run_report(const std::string& title, const Simulation& run, const RunRecord& record,
+                       const std::string& behaviour) {
   std::string status;
   for (const std::string& name : status_names(record.status))
     status += fmt::format("<p>{}: {}.</p>\n", name, status_sentence(name, record));
@@ -175,8 +176,8 @@ std::string run_report(const std::string& title, const Simulation& run, const Ru
       "{10}\n</body>\n</html>\n",
       escaped(title), kReportStyle, status, run.state.steps / run.model().steps_per_frame,
       run.model().scheme.dt, quantile(record.frame_us, .5), quantile(record.frame_us, .99),
-      record.slowest_us, system_plots(run, record) + all_curves(run.columns(), record), shapes,
-      drawn(histogram_script(record)));
+      record.slowest_us, behaviour + system_plots(run, record) + all_curves(run.columns(), record),
+      shapes, drawn(histogram_script(record)));
 }
 
 }  // namespace railstep

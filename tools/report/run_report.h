@@ -9,6 +9,8 @@ namespace railstep {
 /// time, the deformed rails at a few times, and a histogram of the frames' wall times; of a system
 /// the paths of its sensors and the residual of its joints. Needs a record that kept its rows.
 /// Throws Failed where gnuplot fails.
-std::string run_report(const std::string& title, const Simulation& run, const RunRecord& record);
+/// @param behaviour  behaviour_html() of its vehicles
+std::string run_report(const std::string& title, const Simulation& run, const RunRecord& record,
+                       const std::string& behaviour = {});
 
 }  // namespace railstep

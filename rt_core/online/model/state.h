@@ -8,7 +8,7 @@
 
 namespace railstep {
 
-inline constexpr int kWheelForces = 4;  // kept of each wheel of a runner
+inline constexpr int kWheelForces = 6;  // kept of each wheel of a runner
 inline constexpr int kSeatMotions = 6;  // kept of each seat
 
 /// All numbers that a replay needs, and no others. The caller owns the memory, state_doubles() of
@@ -23,7 +23,8 @@ struct State {
   double* contact_force;  // [contacts] N, of the last step: start of the contact solve
   double* port_force;     // [fixed ports] N, the same; 0: open
   double* wheel_force;    // [wheels of runners][kWheelForces] of the last step: N along x, y, z on
-                          // the wheel, N m about x on the rail's section
+                          // the wheel, N m about x on the rail's section, W of
+                          // creep, m of the contact (WheelForce::rail_y)
   /// [wheels of runners][kSeatMotions] on banded lines: y, z and roll of the seat under the wheel,
   /// m and rad, then the rates of the rail there.
   double* seat;
@@ -171,8 +172,12 @@ struct Outputs {
   /// on the rail in the track's axes, down and outwards, N; 0 where it is not touched.
   double wheel_q[2 * kMaxRunnerWheelsets], wheel_y[2 * kMaxRunnerWheelsets];
   double wheel_y_over_q[2 * kMaxRunnerWheelsets];  // 0 where q is 0
-  bool wheel_on_rail[2 * kMaxRunnerWheelsets];     // of the model's rails; never on rigid ones
-  double wheel_place[2 * kMaxRunnerWheelsets];     // along the model's elements, m
+  /// Energy that creep turns to heat by a metre of way, N; 0 slower than 0.1 m/s.
+  double wheel_t_gamma[2 * kMaxRunnerWheelsets];
+  /// Contact on the rail, outwards from its highest point, m; of patches their mean by forces.
+  double wheel_contact_y[2 * kMaxRunnerWheelsets];
+  bool wheel_on_rail[2 * kMaxRunnerWheelsets];  // of the model's rails; never on rigid ones
+  double wheel_place[2 * kMaxRunnerWheelsets];  // along the model's elements, m
   /// By wheelset: force on the track along y, N, then displacement, m, and yaw, rad.
   double wheelset_sum_y[kMaxRunnerWheelsets], wheelset_y[kMaxRunnerWheelsets];
   double wheelset_yaw[kMaxRunnerWheelsets];

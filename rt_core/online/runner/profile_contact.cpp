@@ -163,6 +163,7 @@ void add(double share, const WheelForce& own, WheelForce& sum) noexcept {
   sum.normal += share * own.normal;
   sum.on_section += share * own.on_section;
   sum.creep_power += share * own.creep_power;
+  sum.rail_y += share * own.normal * own.rail_y;
   for (int k = 0; k < 6; ++k) sum.generalised[k] += share * own.generalised[k];
   for (int k = 0; k < 3; ++k) sum.creepage[k] += share * own.normal * own.creepage[k];
 }
@@ -209,6 +210,7 @@ WheelForce profile_force(const RollingContact& c, const ProfileWheel& wheel, dou
   // Patches of a wheel keep one mean.
   const double per_normal = sum.normal > 0. ? 1. / sum.normal : 0.;
   for (double& own : sum.creepage) own *= per_normal;
+  sum.rail_y *= per_normal;
   return sum;
 }
 

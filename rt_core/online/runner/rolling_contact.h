@@ -248,6 +248,9 @@ struct WheelForce {
   double creep_power;     // W; of linear creep that keeps nothing not above 0
   bool slides;            // ContactCreep::slides()
   double creepage[3];     // State::creepage, if Rolling::keeps
+  /// Place of the contact over the point about which the rail's section rolls, along y, m; the mean
+  /// of patches by their normal forces.
+  double rail_y = 0.;
 };
 
 /// Derivatives of the normal force and of the creep forces along and across, over kPlaced, over the
@@ -283,6 +286,7 @@ inline WheelForce wheel_force(const WheelRows<double>& r, double normal, const S
   WheelForce force{r.depth, normal, on_section, {}, 0., creep.slides(), {}};
   if (rolling.keeps)
     keep_creepage(rolling, with_creep_before(slip, rolling), creep, force.creepage);
+  force.rail_y = r.n_z * r.normal_section + r.n_y * r.across_section;
   force.creep_power = f[0] * slip.along + f[1] * slip.across + f[2] * slip.spin;
   generalise(r, ContactForces<double>{normal, f[0], f[1], f[2]}, force.generalised);
   return force;

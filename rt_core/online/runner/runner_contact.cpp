@@ -10,6 +10,14 @@ namespace {
 
 constexpr double kLargeTurn = .1;  // rad, of a body in its frame: sines are 0.2 % off
 
+double time_of(const Model& model, const AlongTrack& at) noexcept {
+  return static_cast<double>(at.step) * model.scheme.dt - at.before;
+}
+
+double speed_of(const Model& model, const RunnerModel& runner, const AlongTrack& at) noexcept {
+  return travelled(runner.travel, time_of(model, at)).speed + at.speed;
+}
+
 /// The forces of a runner's constraints, and how far its rods are from their lengths.
 /// @param poses  of the frames on a design line; else null
 void publish_constraints(const Model& model, const RunnerModel& runner, const State& at,
@@ -44,7 +52,9 @@ void publish_wheelset(const Model& model, const RunnerModel& runner, int i, cons
                       Outputs& out) noexcept {
   const std::int32_t set = runner.first_wheelset + i;
   const double* const u = at.u + runner.first + runner.wheelset[i].first;
-  const double place = element_place(model, runner, i, along_in(runner, at));
+  const AlongTrack along = along_in(runner, at);
+  const double place = element_place(model, runner, i, along);
+  const double speed = std::fabs(speed_of(model, runner, along));
   out.wheelset_sum_y[set] = 0.;
   for (int side = 0; side < 2; ++side) {
     const std::int32_t wheel = WheelId{set, side}.number();
@@ -53,6 +63,8 @@ void publish_wheelset(const Model& model, const RunnerModel& runner, int i, cons
     out.wheel_q[wheel] = force[2];
     out.wheel_y[wheel] = outwards;
     out.wheel_y_over_q[wheel] = force[2] > 0. ? outwards / force[2] : 0.;
+    out.wheel_t_gamma[wheel] = speed > kLeastRolling ? -force[4] / speed : 0.;
+    out.wheel_contact_y[wheel] = side == 0 ? force[5] : -force[5];
     out.wheelset_sum_y[set] -= force[1];
     out.wheel_place[wheel] = place;
     out.wheel_on_rail[wheel] =
@@ -75,10 +87,6 @@ WheelForce force_on_wheel(const RollingContact& c, double radius, double side,
 }
 
 namespace {
-
-double time_of(const Model& model, const AlongTrack& at) noexcept {
-  return static_cast<double>(at.step) * model.scheme.dt - at.before;
-}
 
 /// Place of a runner's origin along the model's elements, m.
 double origin_place(const Model& model, const RunnerModel& runner, const AlongTrack& at) noexcept {
@@ -168,7 +176,7 @@ RailsUnder rails_under(const Model& model, const RunnerModel& runner, int wheels
   if (model.signals == 0 && friction.places == 0 && !on_design_line) return rails;
   const double x = element_place(model, runner, wheelset, at) + offset_of(model, at);
   if (on_design_line) {
-    const double speed = travelled(runner.travel, time_of(model, at)).speed + at.speed;
+    const double speed = speed_of(model, runner, at);
     const FrameRotation rotation = rotation_at(model.design_line, x);
     rails.frame_pitch = speed * rotation.y;
     rails.frame_yaw = speed * rotation.z;

@@ -58,6 +58,8 @@ WheelForce force_on_wheel(const RollingContact& c, double radius, double side,
 inline void keep_wheel_force(const WheelForce& force, double* to) noexcept {
   for (int d = 0; d < 3; ++d) to[d] = force.generalised[d];
   to[3] = force.on_section;
+  to[4] = force.creep_power;
+  to[5] = force.rail_y;
 }
 
 /// Place of a wheelset along the model's elements, m.

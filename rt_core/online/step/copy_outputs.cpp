@@ -32,6 +32,8 @@ void copy_published(const Model& model, const Outputs& from, Outputs& to) noexce
   copy(from.wheel_q, to.wheel_q, 2 * sets);
   copy(from.wheel_y, to.wheel_y, 2 * sets);
   copy(from.wheel_y_over_q, to.wheel_y_over_q, 2 * sets);
+  copy(from.wheel_t_gamma, to.wheel_t_gamma, 2 * sets);
+  copy(from.wheel_contact_y, to.wheel_contact_y, 2 * sets);
   copy(from.wheel_on_rail, to.wheel_on_rail, 2 * sets);
   copy(from.wheel_place, to.wheel_place, 2 * sets);
   copy(from.wheelset_sum_y, to.wheelset_sum_y, sets);

@@ -31,7 +31,11 @@ inline constexpr OutputColumn<kMaxWheels> kFlangeColumns[] = {
     {"flange_gap_m", &Outputs::contact_gap}};
 
 inline constexpr OutputColumn<2 * kMaxRunnerWheelsets> kRunnerWheelColumns[] = {
-    {"q_n", &Outputs::wheel_q}, {"y_n", &Outputs::wheel_y}, {"y_over_q", &Outputs::wheel_y_over_q}};
+    {"q_n", &Outputs::wheel_q},
+    {"y_n", &Outputs::wheel_y},
+    {"y_over_q", &Outputs::wheel_y_over_q},
+    {"t_gamma_n", &Outputs::wheel_t_gamma},
+    {"contact_y_m", &Outputs::wheel_contact_y}};
 inline constexpr OutputColumn<kMaxRunnerWheelsets> kRunnerWheelsetColumns[] = {
     {"sum_y_n", &Outputs::wheelset_sum_y},
     {"y_m", &Outputs::wheelset_y},
