@@ -170,7 +170,7 @@ TEST_CASE("a steady curve has the steady values", "[running_behaviour]") {
   CHECK(of(section, Assessed::q_quasistatic) == Approx(q).epsilon(1e-6));
   CHECK(of(section, Assessed::sum_y) == Approx(sum).epsilon(1e-6));
   for (const AssessedValue& value : section.values)  // nothing hunts
-    CHECK(value.quantity != Assessed::unstable_sum_y);
+    CHECK((value.quantity != Assessed::unstable_sum_y || value.value < 1e-6 * sum));
   CHECK(of(section, Assessed::body_y) < 1e-5);
   // A floor that leans outwards feels its part of gravity besides.
   const auto column = [&](const std::string& name) {

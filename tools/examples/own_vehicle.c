@@ -16,20 +16,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "railstep.h"
+#include "loaded_model.h"
 #include "sprung_wheel.h"
-
-static void* whole_file(const char* name, size_t* bytes) {
-  FILE* const file = fopen(name, "rb");
-  if (!file) return NULL;
-  fseek(file, 0, SEEK_END);
-  const long size = ftell(file);
-  fseek(file, 0, SEEK_SET);
-  void* const block = size > 0 ? malloc((size_t)size) : NULL;
-  *bytes = block ? fread(block, 1, (size_t)size, file) : 0;
-  fclose(file);
-  return block;
-}
 
 static int fail(const char* what, const char* why) {
   fprintf(stderr, "error: %s: %s\n", what, why);
@@ -66,22 +54,12 @@ static int ride(railstep_run* run, double frame_s, double seconds, double consta
 
 int main(int argc, char** argv) {
   if (argc < 4) return fail("usage", "own_vehicle MODEL SECONDS HERTZ [explicit]");
-  size_t bytes = 0;
-  void* const block = whole_file(argv[1], &bytes);
-  if (!block) return fail(argv[1], "cannot be read");
-  const railstep_model* model = NULL;
-  void* const place = malloc(railstep_model_bytes());
-  int32_t result = railstep_load(block, bytes, place, railstep_model_bytes(), &model);
-  if (result != RAILSTEP_OK) return fail(argv[1], railstep_result_text(result));
-  if (railstep_external_wheels(model) != 1) return fail(argv[1], "has not one external wheel");
-  railstep_run* run = NULL;
-  const size_t size = railstep_run_bytes(model);
-  void* const memory = malloc(size);
-  result = railstep_start(model, memory, size, &run);
-  if (result != RAILSTEP_OK) return fail(argv[1], railstep_result_text(result));
-  const int code = ride(run, railstep_frame_s(model), atof(argv[2]), atof(argv[3]), argc > 4);
-  free(memory);
-  free(place);
-  free(block);
+  Loaded loaded;
+  const char* why = load_model(argv[1], &loaded);
+  if (!why && railstep_external_wheels(loaded.model) != 1) why = "has not one external wheel";
+  const int code = why ? fail(argv[1], why)
+                       : ride(loaded.run, railstep_frame_s(loaded.model), atof(argv[2]),
+                              atof(argv[3]), argc > 4);
+  free_model(&loaded);
   return code;
 }

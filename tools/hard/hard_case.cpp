@@ -23,7 +23,7 @@ std::vector<HardCase> hard_cases() {
   for (const auto& part :
        {contact_cases(), element_cases(), input_cases(), joint_cases(), model_cases(),
         profile_cases(), stability_cases(), step_cases(), support_cases(), suspension_cases(),
-        track_cases(), traffic_cases(), wheel_cases()})
+        track_cases(), traffic_cases(), vehicle_cases(), wheel_cases()})
     all.insert(all.end(), part.begin(), part.end());
   const auto number = [](const HardCase& own) { return std::atoi(own.id + 1); };
   std::sort(all.begin(), all.end(),

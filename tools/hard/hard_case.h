@@ -54,6 +54,7 @@ std::vector<HardCase> stability_cases();
 std::vector<HardCase> step_cases();
 std::vector<HardCase> support_cases();
 std::vector<HardCase> suspension_cases();
+std::vector<HardCase> vehicle_cases();
 std::vector<HardCase> track_cases();
 std::vector<HardCase> traffic_cases();
 std::vector<HardCase> wheel_cases();

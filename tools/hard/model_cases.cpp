@@ -282,6 +282,28 @@ HardResult model_file(const std::filesystem::path& scene) {
   return result;
 }
 
+// H71 ------------------------------------------------------------------------------------------
+
+HardResult flange_snapshot(const std::filesystem::path& scene) {
+  const HardRun run(scene);
+  const std::string aside = "car.leading_1_right.y_n";
+  const std::vector<double> force = run.column(aside);
+  const auto peak = std::max_element(force.begin(), force.end()) - force.begin();
+  HardResult result;
+  result.checks = {holds("the flange strikes with more than the wheel's weight",
+                         run.largest(aside) > run.first("car.leading_1_right.q_n"))};
+  for (const std::int64_t frame : {peak - 5, peak - 1, peak, peak + 1, peak + 5}) {
+    const Whole whole(simulation_of(read_any_scene(scene, {})), frame);
+    const auto other = simulation_of(read_any_scene(scene, {}));
+    result.checks.push_back(
+        {fmt::format("restored {} frames after the peak: frames of other bits", frame - peak),
+         static_cast<double>(whole.differing(*other, frame)), 0.});
+  }
+  result.picture = {"time, s", "Y of the leading outer wheel, kN", {run.curve(aside, "Y", 1e-3)}};
+  result.frame_us = run.frame_us();
+  return result;
+}
+
 }  // namespace
 
 std::vector<HardCase> model_cases() {
@@ -301,7 +323,10 @@ std::vector<HardCase> model_cases() {
        "An invariant: refused by the sum.", changed_model},
       {"H47", "h47_model_file", "1e5 steps from the model file, restored in the middle",
        "The file must hold all of the model, to the bit.", "An invariant: the bits of the scene.",
-       model_file}};
+       model_file},
+      {"H71", "h71_flange_snapshot", "A run of a vehicle that is cut in two as its flange strikes",
+       "Patches of three zones, creep, series dampers and friction are in the midst of a blow.",
+       "An invariant: the same bits.", flange_snapshot}};
 }
 
 }  // namespace railstep

@@ -224,6 +224,7 @@ void couple_runners(const Model& model, const Stage& stage, State& s, Workspace&
     couple_seats(model, s, c, runner, set, slope, enters, all);
     if (has_profiles(runner.contact)) law.profile = profile_wheels(w, set);
     law.find_contacts(all.motion + first);
+    law.find_fold(w.newton, newton_size(model), first);
   });
 }
 

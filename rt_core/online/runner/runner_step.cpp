@@ -172,6 +172,7 @@ RunnerResult solve_runner(const RunnerStage& at, State& s, Workspace& w) noexcep
       law[i].rate_at_zero[k] = motion.rate_at_zero[k];
     }
     law[i].find_contacts(z + kMotions * i);
+    law[i].find_fold(r.compliance, interface_size(r), kMotions * i);
     block[i] = {kMotions * i, kMotions, law[i].rank()};
   }
   const std::int32_t motions = kMotions * r.wheelsets;

@@ -67,6 +67,16 @@ int WheelsetLaw::rank() const noexcept {
   return is_folded() ? size() : kOfContact * (contacts(0) + contacts(1));
 }
 
+void WheelsetLaw::find_fold(const double* Y, int n, int first) noexcept {
+  double most = 0.;
+  for (int i = 0; i < size(); ++i) {
+    fold[i] = Y[std::ptrdiff_t{n} * (first + i) + (first + i)];
+    most = fold[i] > most ? fold[i] : most;
+  }
+  for (int i = 0; i < size(); ++i)
+    if (!(fold[i] > 0.)) fold[i] = most > 0. ? most : 1.;
+}
+
 void WheelsetLaw::place(const double* z, Placed& at) const noexcept {
   for (int k = 0; k < kMotions; ++k) {
     at.v[k] = rate * z[k] + rate_at_zero[k];
@@ -157,7 +167,7 @@ void WheelsetLaw::evaluate(const double* z, double* force, const LawSlopes* slop
   if (folded && slopes != nullptr)
     for (int i = 0; i < n * n; ++i) {
       slopes->spread[i] = 0.;
-      slopes->slope[i] = i % (n + 1) == 0 ? 1. : 0.;
+      slopes->slope[i] = i % (n + 1) == 0 ? 1. / fold[i / n] : 0.;
     }
   for (int side = 0; side < 2; ++side) {
     const int first = side == 0 || folded ? 0 : kOfContact * contacts(0);
@@ -178,6 +188,7 @@ void WheelsetLaw::evaluate(const double* z, double* force, const LawSlopes* slop
     force[seat + 1] = -f.generalised[2];
     force[seat + 2] = f.on_section;
   }
+  for (int i = 0; folded && slopes != nullptr && i < n * n; ++i) slopes->spread[i] *= fold[i % n];
 }
 
 WheelsetLaw law_of(const RunnerStage& at, int wheelset, bool seated, const State& s) noexcept {

@@ -49,6 +49,9 @@ struct WheelsetLaw {
   double rate_at_zero[kMotions + 6];
   /// [2] where its wheels touch by their profiles, of find_contacts(); null: treads are cones.
   ProfileWheel* profile;
+  /// Where coordinates are scalars, the scalars are the coordinates over these, m/N and rad/(N m):
+  /// forces, as those of other laws are. Otherwise the numbers of one matrix differ by 1e19.
+  double fold[kMotions + 6];
   double kept[2][kWheelForces];  // State::wheel_force of the last evaluation
   double creepage[2][3];         // State::creepage
   bool lost;                     // a wheel was free there
@@ -62,6 +65,9 @@ struct WheelsetLaw {
   /// Finds where profiles touch. All evaluations then keep this.
   /// @param z  [size] motions to which the step leads, as predicted before it
   void find_contacts(const double* z) noexcept;
+  /// Takes `fold` from the compliance of each coordinate, or the largest of them if one is held.
+  /// @param Y  [n][n] NewtonProblem::Y @param first  of the law's coordinates in it
+  void find_fold(const double* Y, int n, int first) noexcept;
   /// @param slopes  out: of the rank() scalars. The turn of the directions of forces and the creep
   ///                moment are left out: they change the slopes too little in a step. Null: none
   /// @param steep   [rank] out: slopes of the normal forces, by cones the roots of depths; entries
