@@ -269,3 +269,24 @@ TEST_CASE("a design line that a vehicle cannot follow is refused", "[curving]") 
   refused("line.gradient_table=[[0.0,0.0],[1e300,0.1]]", "E-LINE-07");
   refused("line.transition=\"sine\"", "transition");
 }
+
+TEST_CASE("a vehicle with profiles starts in a curve of 100 m and stays as it starts",
+          "[curving]") {
+  for (const char* speed : {"8.0", "10.0"}) {
+    const Scene scene =
+        read_scene(shipped("../hard/h69_r_100_m"),
+                   {"line.curvature_table=[[0.0,0.01]]", "line.cant_table=[[0.0,0.06]]",
+                    std::string("vehicle[0].speed_m_per_s=") + speed, "step.duration_s=2.0"});
+    const Traced run(scene);
+    double sum = 0.;
+    for (const WheelLoad& wheel : running_loads(scene).wheels) {
+      sum += wheel.q;
+      for (const auto& [column, value] :
+           {std::pair{wheel.name + ".q_n", wheel.q}, std::pair{wheel.name + ".y_n", wheel.y}})
+        CHECK(run[column].back() == Approx(value).margin(1e-6 * 1e5));
+    }
+    const double v = std::stod(speed), roll = std::asin(.06 / 1.5);
+    CHECK(sum ==
+          Approx(kMass * (9.81 * std::cos(roll) + v * v * .01 * std::sin(roll))).epsilon(5e-4));
+  }
+}
