@@ -1,5 +1,6 @@
 // Quantities of running behaviour and ride from the rows of a trace.
 #include <algorithm>
+#include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <string>
@@ -81,7 +82,23 @@ TEST_CASE("sections follow the design line", "[running_behaviour]") {
   line.cant.clear();
   CHECK(sections_between(line, 0., 60.).size() == 1);
   line.curvature = {50., 2e-3, 50.001, 3e-3};
-  CHECK(sections_between(line, 0., 100.).size() == 3);
+  const std::vector<TrackSection> two = sections_between(line, 0., 100.);
+  REQUIRE(two.size() == 2);
+  CHECK(two[0].to == Approx(50.).margin(.01));
+  // Rows that are close, with and without noise.
+  line.curvature.clear();
+  for (int i = 0; i <= 2000; ++i) {
+    const double x = .25 * i, noise = 3e-6 * std::sin(i * 37.);
+    line.curvature.insert(line.curvature.end(), {x, noise + (x < 100.   ? 0.
+                                                             : x < 250. ? (x - 100.) / 150. / 3000.
+                                                                        : 1. / 3000.)});
+  }
+  const std::vector<TrackSection> close = sections_between(line, 0., 500.);
+  std::vector<SectionKind> found;
+  for (const TrackSection& own : close) found.push_back(own.kind);
+  CHECK(found == std::vector{straight, transition, curve});
+  CHECK(close[1].from == Approx(100.).margin(6.));
+  CHECK(close[1].to == Approx(250.).margin(6.));
 }
 
 TEST_CASE("stated waves give the closed forms of filters, windows and percentiles",
@@ -212,4 +229,23 @@ TEST_CASE("a vehicle that goes against the track or stands", "[running_behaviour
   REQUIRE(back.size() == 1);
   CHECK(back[0].to - back[0].from == Approx(20.));
   CHECK(back[0].speed == 20.);
+}
+
+TEST_CASE("accelerations in a transition do not depend on the frame", "[running_behaviour]") {
+  const auto felt = [](const std::string& frame) {
+    const Scene scene =
+        read_scene(shipped("manchester_curve"),
+                   {kFloor, "line.curvature_table=[[60.0,0.0],[110.0,2e-3]]",
+                    "line.cant_table=[[60.0,0.0],[110.0,0.1]]", "vehicle[0].speed_m_per_s=25.0",
+                    "step.dt_s=5e-4", "step.frame_s=" + frame, "step.duration_s=6.0"});
+    Simulation run(scene);
+    const RunRecord record =
+        simulate(run, run.model().steps / run.model().steps_per_frame, {}, true);
+    const AssessedVehicle vehicle = assess(scene, run, record).at(0);
+    return std::array{of(vehicle.sections.at(1), Assessed::body_y), vehicle.ride.at(0).comfort};
+  };
+  const auto each = felt("5e-4"), fourth = felt("2e-3");
+  CHECK(fourth[0] == Approx(each[0]).epsilon(.01));
+  CHECK(fourth[1] == Approx(each[1]).epsilon(.02));
+  CHECK(each[0] < .5);
 }

@@ -35,6 +35,9 @@ Way way_of(const Simulation& run, const TraceRows& rows, std::size_t vehicle,
     way.at.push_back({first + (frame.distance + (ahead.empty() ? 0. : ahead[r])),
                       frame.speed + (faster.empty() ? 0. : faster[r]), frame.acceleration});
   }
+  // A vehicle that rolls freely is faster or slower by itself.
+  for (std::size_t r = 1; r < faster.size(); ++r)
+    way.at[r].faster += (faster[r] - faster[r - 1]) / rows.interval();
   const double start = way.at.front().place;
   if (way.at.back().place < start) way.direction = -1.;
   for (std::size_t r = 1; r < rows.rows(); ++r)
@@ -93,14 +96,19 @@ FeltAccelerations felt_at(const Simulation& run, const TraceRows& rows, const Wa
   FeltAccelerations felt{rows.column(name + ".ay_m_per_s2"), rows.column(name + ".az_m_per_s2")};
   const std::vector<double> roll = rows.column(body_name(vehicle, sensor.body) + ".roll_rad");
   for (std::size_t r = 0; r < rows.rows(); ++r) {
-    if (!roll.empty()) felt.y[r] += vehicle.gravity * roll[r];
-    if (!is_there(line)) continue;
-    const OnLine& at = way.at[r];
-    const Vector of_frame = carried(frame_motion(line, at.place + behind, at.speed, at.faster,
-                                                 rows.interval(), vehicle.gravity),
-                                    arm);
-    felt.y[r] += of_frame.y;
-    felt.z[r] += of_frame.z;
+    Vector feels{0., felt.y[r], felt.z[r]};
+    if (is_there(line)) {
+      const OnLine& at = way.at[r];
+      // Rates that jump do so within a step, as the step has it.
+      const FrameMotion frame = frame_motion(line, at.place + behind, at.speed, at.faster,
+                                             run.model().scheme.dt, vehicle.gravity);
+      const Vector of_frame = carried(frame, arm);
+      feels.y += of_frame.y;
+      feels.z += of_frame.z;
+    }
+    const double rolls = roll.empty() ? 0. : roll[r];
+    felt.y[r] = feels.y + rolls * (vehicle.gravity + feels.z);
+    felt.z[r] = feels.z - rolls * feels.y;
   }
   return felt;
 }

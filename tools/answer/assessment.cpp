@@ -50,6 +50,7 @@ struct AssessedSignal {
   std::string where;
   Statistic statistic;
   OverWay over;
+  double wheel_load = 0.;  // static, N, of wheels
 };
 
 /// The middles of windows and the means or roots in them.
@@ -139,7 +140,7 @@ std::vector<double> static_loads(const RailVehicleScene& vehicle, double speed) 
 /// Nadal's limit by the steepest flank of the wheel, on which its radius grows inwards, and the
 /// larger friction of both rails.
 double nadal_limit(const RollingContact& contact) {
-  if (!has_profiles(contact)) return kUnknown;
+  if (!has_profiles(contact) || contact.creep.law == CreepLaw::linear) return kUnknown;
   double steepest = 0.;
   for (int i = 0; i < kSearchStrips; ++i)
     steepest = std::max(steepest, -contact.profiles.pair.search_slope[i]);
@@ -159,47 +160,70 @@ bool is_of_curves(Assessed quantity) {
          quantity == Assessed::body_y_quasistatic;
 }
 
-/// The largest of each quantity over all that have it.
+/// The largest of each quantity over its limit, of all that have it.
 std::vector<AssessedValue> values_in(const std::vector<AssessedSignal>& signals, double from,
-                                     double to, SectionKind kind, const LimitedBy& by) {
+                                     double to, SectionKind kind, double speed) {
   std::map<Assessed, AssessedValue> found;
   for (const AssessedSignal& signal : signals) {
     if (is_of_curves(signal.quantity) && kind != SectionKind::curve) continue;
     const std::vector<double> values = within(signal.over, from, to);
     if (values.empty()) continue;
-    const double value = signal.statistic(values);
-    const auto [at, made] = found.try_emplace(
-        signal.quantity,
-        AssessedValue{signal.quantity, signal.where, value, limit_of(signal.quantity, by)});
-    if (made || !(value > at->second.value)) continue;
-    at->second.where = signal.where;
-    at->second.value = value;
+    const AssessedValue own{signal.quantity, signal.where, signal.statistic(values),
+                            limit_of(signal.quantity, {speed, signal.wheel_load})};
+    const auto [at, made] = found.try_emplace(signal.quantity, own);
+    if (!made && against_limit(own) > against_limit(at->second)) at->second = own;
   }
   std::vector<AssessedValue> values;
   for (auto& [quantity, value] : found) values.push_back(std::move(value));
   return values;
 }
 
+/// Sections whose values belong together; null of transitions and of short sections.
+const char* track_of(const TrackSection& section) {
+  if (section.to - section.from < .8 * nominal_length(section)) return nullptr;
+  const double radius = std::fabs(section.radius);
+  switch (section.kind) {
+    case SectionKind::straight:
+      return "straight";
+    case SectionKind::transition:
+      return nullptr;
+    case SectionKind::curve:
+      break;
+  }
+  return radius >= 600.   ? "curves from 600 m on"
+         : radius >= 400. ? "curves from 400 to 600 m"
+                          : "curves below 400 m";
+}
+
+struct ExpectedGroup {
+  const char* track;
+  std::vector<double> values;
+  double limit;
+};
+
 /// The largest values to expect of like sections.
 std::vector<EstimatedValue> estimates_of(const std::vector<AssessedSection>& sections) {
-  std::map<std::pair<SectionKind, Assessed>, std::pair<std::vector<double>, double>> groups;
-  for (const AssessedSection& section : sections)
+  std::map<std::pair<std::string, Assessed>, ExpectedGroup> groups;
+  for (const AssessedSection& section : sections) {
+    const char* const track = track_of(section);
+    if (track == nullptr) continue;
     for (const AssessedValue& value : section.values) {
-      auto& [values, limit] = groups[{section.kind, value.quantity}];
-      values.push_back(value.value);
-      limit = values.size() == 1 ? value.limit : std::min(limit, value.limit);
+      ExpectedGroup& group = groups[{track, value.quantity}];
+      group.track = track;
+      group.limit = group.values.empty() ? value.limit : std::min(group.limit, value.limit);
+      group.values.push_back(value.value);
     }
+  }
   std::vector<EstimatedValue> estimates;
   for (const auto& [of, group] : groups) {
-    const auto& [values, limit] = group;
     const double part = text_of(of.second).deviations;
-    if (part == 0. || values.size() < 2) continue;
-    const double middle = mean(values);
+    if (part == 0. || group.values.size() < 2) continue;
+    const double middle = mean(group.values);
     double square = 0.;
-    for (const double value : values) square += (value - middle) * (value - middle);
-    const double deviation = std::sqrt(square / static_cast<double>(values.size() - 1));
-    estimates.push_back(
-        {of.first, of.second, static_cast<int>(values.size()), middle + part * deviation, limit});
+    for (const double value : group.values) square += (value - middle) * (value - middle);
+    const double deviation = std::sqrt(square / static_cast<double>(group.values.size() - 1));
+    estimates.push_back({group.track, of.second, static_cast<int>(group.values.size()),
+                         middle + part * deviation, group.limit});
   }
   return estimates;
 }
@@ -208,9 +232,10 @@ std::vector<EstimatedValue> estimates_of(const std::vector<AssessedSection>& sec
 void add_running(const Way& way, const DesignLine& line, double gravity, double from, double to,
                  AssessedSection& section) {
   std::vector<double> speeds, across;
-  for (std::size_t r = 0; r < way.at.size(); ++r) {
-    if (way.distance[r] < from || way.distance[r] > to) continue;
-    const OnLine& at = way.at[r];
+  const auto begin = std::lower_bound(way.distance.begin(), way.distance.end(), from),
+             end = std::upper_bound(begin, way.distance.end(), to);
+  for (auto row = begin; row != end; ++row) {
+    const OnLine& at = way.at[static_cast<std::size_t>(row - way.distance.begin())];
     speeds.push_back(std::fabs(at.speed));
     across.push_back(
         frame_motion(line, at.place, at.speed, at.faster, 0., gravity).acceleration[1]);
@@ -231,6 +256,40 @@ AssessedCurve curve_of(const AssessedSignal& signal, const Way& way) {
   return curve;
 }
 
+/// Signals are kept over the way of the place where they are, `ahead` of the first body.
+void move_ahead(double ahead, const Way& way, std::vector<AssessedSignal>& signals,
+                std::size_t first) {
+  for (std::size_t i = first; i < signals.size(); ++i)
+    for (double& distance : signals[i].over.distance) distance += way.direction * ahead;
+}
+
+/// The bodies on which ride is assessed: the first of each vehicle.
+bool carries(const RailVehicleScene& vehicle, std::size_t body) {
+  return std::any_of(vehicle.parts.begin(), vehicle.parts.end(),
+                     [&](const RailVehicleScene::Part& part) { return part.first == body; });
+}
+
+void add_wheelsets(const RailVehicleScene& vehicle, const TraceRows& rows, const Way& way,
+                   std::vector<AssessedSignal>& signals) {
+  const std::vector<double> loads = static_loads(vehicle, way.at.front().speed);
+  const double dt = rows.interval(), origin = vehicle.runner.bodies.front().centre[0];
+  std::size_t set = 0;
+  for (const RunnerBody& body : vehicle.runner.bodies) {
+    if (!body.is_wheelset()) continue;
+    const std::string& name = vehicle.wheelsets[set];
+    const std::size_t first = signals.size();
+    const std::vector<double> sum_y = rows.column(name + ".sum_y_n");
+    signals.push_back(
+        {Assessed::sum_y, name, largest_size, mean_2m(way, filtered(low_pass(20.), sum_y, dt))});
+    add_hunting(name, sum_y, dt, way, signals);
+    for (const char* side : {"_left", "_right"})
+      add_wheel(name + side, loads[set], rows, way, signals);
+    for (std::size_t i = first; i < signals.size(); ++i) signals[i].wheel_load = loads[set];
+    move_ahead(body.centre[0] - origin, way, signals, first);
+    ++set;
+  }
+}
+
 AssessedVehicle assess_vehicle(const Scene& scene, std::size_t index, const Simulation& run,
                                const TraceRows& rows) {
   const RailVehicleScene& vehicle = scene.rail_vehicles[index];
@@ -238,24 +297,16 @@ AssessedVehicle assess_vehicle(const Scene& scene, std::size_t index, const Simu
   AssessedVehicle made{vehicle.name, nadal_limit(vehicle.contact), {}, {}, {}, {}};
   const Way way = way_of(run, rows, index, vehicle);
   std::vector<AssessedSignal> signals;
-  const std::vector<double> loads = static_loads(vehicle, way.at.front().speed);
-  double largest_load = 0.;
-  for (std::size_t i = 0; i < loads.size(); ++i) {
-    const std::string& set = vehicle.wheelsets[i];
-    const std::vector<double> sum_y = rows.column(set + ".sum_y_n");
-    signals.push_back(
-        {Assessed::sum_y, set, largest_size, mean_2m(way, filtered(low_pass(20.), sum_y, dt))});
-    add_hunting(set, sum_y, dt, way, signals);
-    for (const char* side : {"_left", "_right"})
-      add_wheel(set + side, loads[i], rows, way, signals);
-    largest_load = std::max(largest_load, loads[i]);
-  }
+  add_wheelsets(vehicle, rows, way, signals);
   for (const SensorScene& sensor : scene.sensors) {
     const auto* const on = std::get_if<RailVehicleSensor>(&sensor.on);
-    if (on == nullptr || on->vehicle != index || vehicle.runner.bodies[on->body].is_wheelset())
-      continue;
+    if (on == nullptr || on->vehicle != index || !carries(vehicle, on->body)) continue;
     const FeltAccelerations felt = felt_at(run, rows, way, vehicle, *on, sensor.name);
+    const std::size_t first = signals.size();
     add_body(sensor.name, felt, dt, way, signals);
+    const auto& bodies = vehicle.runner.bodies;
+    move_ahead(bodies[on->body].centre[0] + on->point[0] - bodies.front().centre[0], way, signals,
+               first);
     if (dt * static_cast<double>(rows.rows()) >= kBlock)
       made.ride.push_back(ride_at(sensor.name, felt, dt));
   }
@@ -267,7 +318,7 @@ AssessedVehicle assess_vehicle(const Scene& scene, std::size_t index, const Simu
     const double a = way.direction * (part.from - start), b = way.direction * (part.to - start);
     const double from = std::min(a, b), to = std::max(a, b);
     add_running(way, run.model().design_line, vehicle.gravity, from, to, section);
-    section.values = values_in(signals, from, to, part.kind, {section.speed, largest_load});
+    section.values = values_in(signals, from, to, part.kind, section.speed);
     made.sections.push_back(std::move(section));
   }
   made.estimates = estimates_of(made.sections);
@@ -277,6 +328,10 @@ AssessedVehicle assess_vehicle(const Scene& scene, std::size_t index, const Simu
 }
 
 }  // namespace
+
+double against_limit(const AssessedValue& value) {
+  return std::isnan(value.limit) ? value.value : value.value / value.limit;
+}
 
 std::vector<AssessedVehicle> assess(const Scene& scene, const Simulation& run,
                                     const RunRecord& record) {

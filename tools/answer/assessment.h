@@ -20,6 +20,9 @@ struct AssessedValue {
   double value, limit;  // in the quantity's unit; no limit: NaN
 };
 
+/// A value over its limit; by itself if it has none.
+double against_limit(const AssessedValue& value);
+
 enum class SectionKind { straight, transition, curve };
 /// A part of the way of a vehicle's first body.
 struct TrackSection {
@@ -35,7 +38,7 @@ struct AssessedSection : TrackSection {
 
 /// The largest value to expect, by the mean of like sections and the deviation between them.
 struct EstimatedValue {
-  SectionKind kind;
+  const char* track;  // which sections
   Assessed quantity;
   int sections;
   double estimate, limit;
@@ -66,6 +69,8 @@ struct AssessedVehicle {
   std::vector<AssessedCurve> curves;
 };
 
+/// Longest time between two rows, s: a quarter of a wave of 50 Hz.
+inline constexpr double kMostRowInterval = 5e-3;
 /// Vehicles that go less than 2 m have no sections, and no ride in less than 5 s.
 /// @param record  with its rows
 std::vector<AssessedVehicle> assess(const Scene& scene, const Simulation& run,

@@ -43,7 +43,7 @@ Json sections_json(const std::vector<AssessedSection>& sections) {
 Json estimates_json(const std::vector<EstimatedValue>& estimates) {
   Json all = Json::array();
   for (const EstimatedValue& own : estimates)
-    all.push_back({{"kind", name_of(own.kind)},
+    all.push_back({{"track", own.track},
                    {"quantity", text_of(own.quantity).key},
                    {"sections", own.sections},
                    {"estimate", own.estimate},

@@ -89,11 +89,8 @@ void add_loads_on_track(const Scene& scene, RunningLoads& loads) {
   }
 }
 
-}  // namespace
-
-std::vector<RunningMode> modes_at_speed(const Scene& scene, double speed) {
-  check(scene);
-  const std::vector<RunningOn> rails = rails_of(scene, scene.design_line);
+std::vector<RunningMode> modes_on(const Scene& scene, const std::vector<RunningOn>& rails,
+                                  double speed) {
   std::vector<RunningMode> all;
   for (std::size_t i = 0; i < rails.size(); ++i) {
     const RailVehicleScene& v = scene.rail_vehicles[i];
@@ -107,6 +104,27 @@ std::vector<RunningMode> modes_at_speed(const Scene& scene, double speed) {
   }
   std::sort(all.begin(), all.end(),
             [](const RunningMode& a, const RunningMode& b) { return a.frequency < b.frequency; });
+  return all;
+}
+
+}  // namespace
+
+std::vector<RunningMode> modes_at_speed(const Scene& scene, double speed) {
+  check(scene);
+  return modes_on(scene, rails_of(scene, scene.design_line), speed);
+}
+
+std::vector<ModesAtSpeed> modes_at_speeds(const Scene& scene, const std::vector<double>& speeds) {
+  check(scene);
+  const std::vector<RunningOn> rails = rails_of(scene, scene.design_line);
+  std::vector<ModesAtSpeed> all;
+  for (const double speed : speeds) {
+    all.push_back({speed, {}});
+    try {
+      all.back().modes = modes_on(scene, rails, speed);
+    } catch (const Failed&) {  // no steady motion at this speed
+    }
+  }
   return all;
 }
 

@@ -13,6 +13,13 @@ namespace railstep {
 /// InputError where the scene has no rail vehicle.
 std::vector<RunningMode> modes_at_speed(const Scene& scene, double speed);
 
+/// The same at several speeds; one at which the vehicles find no steady motion has no modes.
+struct ModesAtSpeed {
+  double speed;  // m/s
+  std::vector<RunningMode> modes;
+};
+std::vector<ModesAtSpeed> modes_at_speeds(const Scene& scene, const std::vector<double>& speeds);
+
 /// The lowest critical speed of the scene's rail vehicles between two speeds, m/s.
 std::optional<CriticalRunning> critical_speed_between(const Scene& scene, double from, double to);
 

@@ -8,12 +8,9 @@
 namespace railstep {
 namespace {
 
-constexpr double kStraight = 1e-6;  // 1/m: less curved track is straight
-
-double nominal_length(const TrackSection& part) {
-  const double radius = std::fabs(part.radius);
-  return radius == 0. || radius >= 600. ? 250. : radius >= 400. ? 100. : 70.;
-}
+constexpr double kBase = 10.;        // m, over which a change counts
+constexpr double kCurvature = 1e-5;  // 1/m
+constexpr double kCant = 1e-3;       // rad, 1.5 mm
 
 /// Where a table of the line has a row, between two places, and these themselves.
 std::vector<double> borders_of(const LineShape& line, double from, double to) {
@@ -26,15 +23,16 @@ std::vector<double> borders_of(const LineShape& line, double from, double to) {
 }
 
 TrackSection section_between(const DesignLine& line, double from, double to) {
-  const double inside = 1e-6 * (to - from);  // a table may jump at a border
-  const auto at = [&](const LineTable& table, double place) {
-    return value_at(table, line.transition, place).value;
+  const double middle = .5 * (from + to),
+               half =
+                   .5 * std::max(kBase, (1. - 1e-6) * (to - from));  // a table may jump at a border
+  const auto change = [&](const LineTable& table) {
+    return std::fabs(value_at(table, line.transition, middle + half).value -
+                     value_at(table, line.transition, middle - half).value);
   };
-  const double first = at(line.curvature, from + inside), last = at(line.curvature, to - inside),
-               middle = at(line.curvature, .5 * (from + to));
-  const double cant_change = at(line.cant, to - inside) - at(line.cant, from + inside);
-  const bool changes = std::fabs(last - first) > kStraight || std::fabs(cant_change) > 1e-4;
-  const double radius = std::fabs(middle) > kStraight ? 1. / middle : 0.;
+  const double curvature = value_at(line.curvature, line.transition, middle).value;
+  const double radius = std::fabs(curvature) > kCurvature ? 1. / curvature : 0.;
+  const bool changes = change(line.curvature) > kCurvature || change(line.cant) > kCant;
   return {changes        ? SectionKind::transition
           : radius == 0. ? SectionKind::straight
                          : SectionKind::curve,
@@ -44,10 +42,31 @@ TrackSection section_between(const DesignLine& line, double from, double to) {
 bool goes_on(const TrackSection& before, const TrackSection& after) {
   return before.kind == after.kind &&
          (before.kind != SectionKind::curve ||
-          std::fabs(before.radius - after.radius) < 1e-3 * std::fabs(before.radius));
+          std::fabs(before.radius - after.radius) < .02 * std::fabs(before.radius));
+}
+
+/// Adds a part behind others. One that is short belongs to the part before it.
+void append(const TrackSection& part, std::vector<TrackSection>& parts) {
+  if (!parts.empty() && goes_on(parts.back(), part)) {
+    parts.back().to = part.to;
+    return;
+  }
+  if (parts.size() > 1 && parts.back().to - parts.back().from < kBase) {
+    const TrackSection last = parts.back();
+    parts.pop_back();
+    parts.back().to = last.to;
+    return append(part, parts);
+  }
+  parts.push_back(part);
 }
 
 }  // namespace
+
+double nominal_length(const TrackSection& part) {
+  const double radius = std::fabs(part.radius);
+  if (part.kind == SectionKind::transition) return 0.;
+  return radius == 0. || radius >= 600. ? 250. : radius >= 400. ? 100. : 70.;
+}
 
 std::vector<TrackSection> sections_between(const LineShape& line, double from, double to) {
   const DesignLine view = design_line(line, to - from);
@@ -55,11 +74,7 @@ std::vector<TrackSection> sections_between(const LineShape& line, double from, d
   std::vector<TrackSection> parts, sections;
   for (std::size_t i = 0; i + 1 < borders.size(); ++i) {
     if (!(borders[i + 1] > borders[i])) continue;
-    const TrackSection part = section_between(view, borders[i], borders[i + 1]);
-    if (!parts.empty() && goes_on(parts.back(), part))
-      parts.back().to = part.to;
-    else
-      parts.push_back(part);
+    append(section_between(view, borders[i], borders[i + 1]), parts);
   }
   for (const TrackSection& part : parts) {
     const double length = part.to - part.from;

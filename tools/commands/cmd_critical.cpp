@@ -1,19 +1,24 @@
 #include <fmt/core.h>
 
+#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "answer/scene_running.h"
 #include "commands/command.h"
 #include "commands/options.h"
+#include "report/critical_report.h"
+#include "report/drawing.h"
+#include "text/write.h"
 
 namespace railstep {
 namespace {
 
 struct CriticalOptions {
-  std::string scene;
+  std::string scene, report;
   std::vector<std::string> overrides;
   double from = 1., to = 200.;
   bool json = false;
@@ -34,12 +39,24 @@ void print_text(const CriticalOptions& o, const std::optional<CriticalRunning>& 
                o.from, o.to, o.from);
 }
 
+void write_page(const CriticalOptions& o, const Scene& scene,
+                const std::optional<CriticalRunning>& found) {
+  constexpr int kSpeeds = 100;
+  std::vector<double> speeds;
+  for (int k = 0; k <= kSpeeds; ++k) speeds.push_back(o.from + (o.to - o.from) * k / kSpeeds);
+  write_file(o.report, critical_page(std::filesystem::path(o.scene).stem().string(),
+                                     modes_at_speeds(scene, speeds), found));
+}
+
 Exit run_critical(const CriticalOptions& o) {
   if (!(o.from < o.to))
     throw InputError("E-CLI-15", fmt::format("--from {:g} is not below --to {:g}; expected a range "
                                              "of speeds",
                                              o.from, o.to));
-  const auto found = critical_speed_between(read_scene(o.scene, o.overrides), o.from, o.to);
+  if (!o.report.empty()) need_gnuplot();
+  const Scene scene = read_scene(o.scene, o.overrides);
+  const auto found = critical_speed_between(scene, o.from, o.to);
+  if (!o.report.empty()) write_page(o, scene, found);
   if (o.json)
     fmt::print("{}\n", to_json(found).dump(2));
   else
@@ -56,6 +73,8 @@ Command add_critical(CLI::App& app) {
   sub->add_option("SCENE", o->scene, "scene file (TOML)")->required()->check(reads_file());
   sub->add_option("--from", o->from, "lowest speed, m/s (default 1)")->check(within(0.1, 1000.0));
   sub->add_option("--to", o->to, "highest speed, m/s (default 200)")->check(within(0.1, 1000.0));
+  sub->add_option("--report", o->report, "write a page with the root locus (HTML; needs gnuplot)")
+      ->check(writes_file());
   add_overrides(*sub, o->overrides);
   sub->add_flag("--json", o->json, "one JSON object on stdout");
   sub->footer(

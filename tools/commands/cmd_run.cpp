@@ -163,12 +163,21 @@ std::optional<VtkRecord> vtk_record(const RunOptions& o, const AnyScene* scene,
 /// The running behaviour of a scene's rail vehicles, for --assess and reports.
 std::vector<AssessedVehicle> assessed(const RunOptions& o, const Scene* track,
                                       const Simulation& run, const RunRecord& record) {
-  const bool wanted = o.assess || (!o.report.empty() && track != nullptr);
+  const bool often =
+      run.model().scheme.dt * run.model().steps_per_frame <= kMostRowInterval * (1. + 1e-9);
+  const bool wanted = o.assess || (!o.report.empty() && track != nullptr && often);
   if (!wanted || record.first_bad_unknown >= 0) return {};
   return assess(*track, run, record);
 }
 
-void want_vehicles(const RunOptions& o, const Scene* track) {
+void want_vehicles(const RunOptions& o, const Scene* track, const Model& model) {
+  const double frame = model.scheme.dt * model.steps_per_frame;
+  if (o.assess && frame > kMostRowInterval * (1. + 1e-9))
+    throw InputError("E-RUN-09",
+                     fmt::format("{}: a frame of {:g} s is too long for --assess, whose "
+                                 "filters go up to 20 Hz; expected step.frame_s up to "
+                                 "{:g}",
+                                 o.input, frame, kMostRowInterval));
   if (!o.assess || (track != nullptr && !track->rail_vehicles.empty())) return;
   throw InputError("E-RUN-08", fmt::format("--assess is of the running behaviour of vehicles, and "
                                            "{} is not a scene with one in space; expected a "
@@ -211,7 +220,7 @@ Exit run(const RunOptions& o) {
     remarks.note(constants_note(*track));
     remarks.note(lopsided_note(*track));
   }
-  want_vehicles(o, track);
+  want_vehicles(o, track, simulation->model());
   if (!o.report.empty()) need_gnuplot();
   std::optional<Trace> trace;
   if (!o.trace.empty()) trace.emplace(o.trace, simulation->columns());

@@ -99,18 +99,19 @@ static int with_model(const char* file, double seconds) {
 /* Place of a name in one of the lists of a file of names; -1 without it. */
 static int place_of(const char* file, const char* list, const char* name) {
   FILE* const in = fopen(file, "r");
-  char line[512];
-  int place = -1, found = -1;
+  char line[512], word[16];
+  unsigned count = 0, sum, place = 0;
+  int ours = 0, found = -1;
   while (in && fgets(line, sizeof line, in)) {
-    unsigned count, sum;
-    char word[16];
     line[strcspn(line, "\r\n")] = 0;
-    if (sscanf(line, "%15s %u %x", word, &count, &sum) == 3)
-      place = strcmp(word, list) == 0 ? 0 : -1;
-    else if (place >= 0 && strcmp(line, name) == 0)
-      found = place;
-    else if (place >= 0)
+    if (sscanf(line, "%15s %u %x", word, &count, &sum) == 3) {
+      ours = strcmp(word, list) == 0;
+      place = 0;
+    } else if (ours && place < count && strcmp(line, name) == 0) {
+      found = (int)place;
+    } else {
       ++place;
+    }
   }
   if (in) fclose(in);
   return found;
@@ -154,7 +155,8 @@ static int with_udp(char** word) {
   if (!is_known(&at)) return fail(word[1], "a name of the controller is not in it");
   const int file = connected(word[0]);
   if (file < 0) return fail(word[0], "no such address; expected HOST:PORT");
-  const double frame_s = atof(word[2]), frames = atof(word[3]) / frame_s;
+  const double frame_s = atof(word[2]), frames = frame_s > 0.0 ? atof(word[3]) / frame_s : 0.0;
+  if (!(frames >= 1.0 && frames < 1e9)) return fail(word[3], "expected one frame or more");
   const int code = over_udp(file, &layout, &at, frame_s, (long)(frames + .5));
   close(file);
   return code;

@@ -16,9 +16,6 @@ struct WorstValue {
   const AssessedValue* value;
   const AssessedSection* section;
 };
-double against_limit(const AssessedValue& value) {
-  return std::isnan(value.limit) ? value.value : value.value / value.limit;
-}
 std::map<Assessed, WorstValue> worst_values(const AssessedVehicle& vehicle) {
   std::map<Assessed, WorstValue> worst;
   for (const AssessedSection& section : vehicle.sections)
@@ -74,7 +71,7 @@ std::string estimates_table(const AssessedVehicle& vehicle) {
   std::string rows;
   for (const EstimatedValue& own : vehicle.estimates)
     rows += fmt::format("<tr><td>{}, {}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td></tr>\n",
-                        text_of(own.quantity).title, text_of(own.quantity).unit, name_of(own.kind),
+                        text_of(own.quantity).title, text_of(own.quantity).unit, own.track,
                         own.sections, in_unit(own.quantity, own.estimate),
                         in_unit(own.quantity, own.limit));
   return "<h3>Largest values to expect</h3>\n<p>Mean of the sections and 3 (safety) or 2.2 "

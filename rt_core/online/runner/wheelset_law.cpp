@@ -74,7 +74,7 @@ void WheelsetLaw::find_fold(const double* Y, int n, int first) noexcept {
     most = fold[i] > most ? fold[i] : most;
   }
   for (int i = 0; i < size(); ++i)
-    if (!(fold[i] > 0.)) fold[i] = most > 0. ? most : 1.;
+    if (!(fold[i] > 1e-12 * most)) fold[i] = most > 0. ? most : 1.;
 }
 
 void WheelsetLaw::place(const double* z, Placed& at) const noexcept {

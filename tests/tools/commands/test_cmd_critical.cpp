@@ -290,3 +290,22 @@ TEST_CASE("the bodies of a vehicle's file are checked", "[critical]") {
           "E-VEHICLE-24");
   std::filesystem::remove_all(folder);
 }
+
+TEST_CASE("the root locus is drawn with the answer in words", "[critical][cli]") {
+  const auto page = fresh_folder("critical") / "critical.html";
+  const std::string scene =
+      std::string(RAILSTEP_SOURCE) + "/config/scenes/manchester_straight.toml";
+  const Ran ran =
+      railstep_program("critical " + scene + " --from 80 --to 100 --report " + page.string());
+  REQUIRE(ran.code == 0);
+  const std::string text = text_of(page);
+  CHECK_THAT(text, Catch::Contains("hunts from 93.52 m/s") && Catch::Contains("</html>"));
+  std::size_t drawings = 0;
+  for (std::size_t at = text.find("<svg"); at != std::string::npos; at = text.find("<svg", at + 1))
+    ++drawings;
+  CHECK(drawings == 2);
+  const Ran none =
+      railstep_program("critical " + scene + " --from 40 --to 60 --report " + page.string());
+  REQUIRE(none.code == 0);
+  CHECK_THAT(text_of(page), Catch::Contains("No mode loses its damping"));
+}
