@@ -53,6 +53,13 @@ double of(const AssessedSection& section, Assessed quantity) {
   return 0.;
 }
 
+std::vector<SectionKind> kinds_of(const std::vector<TrackSection>& sections) {
+  std::vector<SectionKind> kinds(sections.size());
+  std::transform(sections.begin(), sections.end(), kinds.begin(),
+                 [](const TrackSection& own) { return own.kind; });
+  return kinds;
+}
+
 double butterworth(double hz, double corner) {
   return 1. / std::sqrt(1. + std::pow(hz / corner, 8));
 }
@@ -66,10 +73,8 @@ TEST_CASE("sections follow the design line", "[running_behaviour]") {
   line.curvature = {100., 0., 200., 2e-3, 500., 2e-3, 600., 0.};
   line.cant = {100., 0., 200., .1, 500., .1, 600., 0.};
   const std::vector<TrackSection> sections = sections_between(line, 0., 1100.);
-  std::vector<SectionKind> kinds;
-  for (const TrackSection& own : sections) kinds.push_back(own.kind);
   using enum SectionKind;
-  CHECK(kinds ==
+  CHECK(kinds_of(sections) ==
         std::vector{straight, transition, curve, curve, curve, transition, straight, straight});
   CHECK(sections[2].from == 200.);
   CHECK(sections[2].to == Approx(300.));
@@ -94,9 +99,7 @@ TEST_CASE("sections follow the design line", "[running_behaviour]") {
                                                                         : 1. / 3000.)});
   }
   const std::vector<TrackSection> close = sections_between(line, 0., 500.);
-  std::vector<SectionKind> found;
-  for (const TrackSection& own : close) found.push_back(own.kind);
-  CHECK(found == std::vector{straight, transition, curve});
+  CHECK(kinds_of(close) == std::vector{straight, transition, curve});
   CHECK(close[1].from == Approx(100.).margin(6.));
   CHECK(close[1].to == Approx(250.).margin(6.));
 }

@@ -174,6 +174,7 @@ std::vector<AssessedValue> values_in(const std::vector<AssessedSignal>& signals,
     if (!made && against_limit(own) > against_limit(at->second)) at->second = own;
   }
   std::vector<AssessedValue> values;
+  values.reserve(found.size());
   for (auto& [quantity, value] : found) values.push_back(std::move(value));
   return values;
 }
