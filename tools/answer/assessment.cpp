@@ -33,16 +33,6 @@ double median_size(const std::vector<double>& values) { return std::fabs(percent
 double largest(const std::vector<double>& values) {
   return *std::max_element(values.begin(), values.end());
 }
-double mean(const std::vector<double>& values) {
-  double sum = 0.;
-  for (const double value : values) sum += value;
-  return sum / static_cast<double>(values.size());
-}
-double rms(const std::vector<double>& values) {
-  double sum = 0.;
-  for (const double value : values) sum += value * value;
-  return std::sqrt(sum / static_cast<double>(values.size()));
-}
 
 /// A signal of one wheel, wheelset or sensor that is assessed.
 struct AssessedSignal {
@@ -91,7 +81,7 @@ void add_wheel(const std::string& wheel, double static_load, const TraceRows& ro
   signals.push_back({Assessed::y_quasistatic, wheel, median_size, over_way(way, y)});
   signals.push_back({Assessed::q_quasistatic, wheel, median_size, over_way(way, q)});
   signals.push_back(
-      {Assessed::t_gamma, wheel, mean, over_way(way, rows.column(wheel + ".t_gamma_n"))});
+      {Assessed::t_gamma, wheel, mean_of, over_way(way, rows.column(wheel + ".t_gamma_n"))});
 }
 
 void add_body(const std::string& sensor, const FeltAccelerations& felt, double dt, const Way& way,
@@ -101,8 +91,8 @@ void add_body(const std::string& sensor, const FeltAccelerations& felt, double d
                 z = over_way(way, filtered(band, felt.z, dt));
   signals.push_back({Assessed::body_y, sensor, largest_size, y});
   signals.push_back({Assessed::body_z, sensor, largest_size, z});
-  signals.push_back({Assessed::body_y_rms, sensor, rms, y});
-  signals.push_back({Assessed::body_z_rms, sensor, rms, z});
+  signals.push_back({Assessed::body_y_rms, sensor, rms_of, y});
+  signals.push_back({Assessed::body_z_rms, sensor, rms_of, z});
   signals.push_back({Assessed::body_y_quasistatic, sensor, median_size,
                      over_way(way, filtered(low_pass(20.), felt.y, dt))});
 }
@@ -110,7 +100,7 @@ void add_body(const std::string& sensor, const FeltAccelerations& felt, double d
 /// Sperling's index of comfort by the rms of a weighted acceleration: W_z of a harmonic is the
 /// 0.3rd power of its weighted amplitude in cm/s2.
 double ride_index(const AnalogueFilter& weighting, const std::vector<double>& felt, double dt) {
-  return std::pow(100. * std::sqrt(2.) * rms(filtered(weighting, felt, dt)), .3);
+  return std::pow(100. * std::sqrt(2.) * rms_of(filtered(weighting, felt, dt)), .3);
 }
 
 RideComfort ride_at(const std::string& sensor, const FeltAccelerations& felt, double dt) {
@@ -219,7 +209,7 @@ std::vector<EstimatedValue> estimates_of(const std::vector<AssessedSection>& sec
   for (const auto& [of, group] : groups) {
     const double part = text_of(of.second).deviations;
     if (part == 0. || group.values.size() < 2) continue;
-    const double middle = mean(group.values);
+    const double middle = mean_of(group.values);
     double square = 0.;
     for (const double value : group.values) square += (value - middle) * (value - middle);
     const double deviation = std::sqrt(square / static_cast<double>(group.values.size() - 1));
@@ -241,8 +231,8 @@ void add_running(const Way& way, const DesignLine& line, double gravity, double 
     across.push_back(
         frame_motion(line, at.place, at.speed, at.faster, 0., gravity).acceleration[1]);
   }
-  section.speed = mean(speeds);
-  section.across = mean(across);
+  section.speed = mean_of(speeds);
+  section.across = mean_of(across);
 }
 
 bool is_plotted(Assessed quantity) {

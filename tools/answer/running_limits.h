@@ -35,7 +35,7 @@ struct LimitedBy {
   double speed;       // m/s
   double wheel_load;  // static, N
 };
-/// Limit of a quantity, SI; NaN where there is none.
+/// The limit of a quantity in SI units. It is NaN if the quantity has none.
 double limit_of(Assessed quantity, const LimitedBy& by);
 
 }  // namespace railstep

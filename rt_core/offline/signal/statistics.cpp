@@ -5,6 +5,7 @@
 #include <complex>
 #include <limits>
 #include <numbers>
+#include <numeric>
 
 namespace railstep {
 namespace {
@@ -88,6 +89,15 @@ std::vector<double> sliding_rms(const std::vector<double>& distance,
   return roots;
 }
 
+double mean_of(const std::vector<double>& values) {
+  return std::accumulate(values.begin(), values.end(), 0.) / static_cast<double>(values.size());
+}
+
+double rms_of(const std::vector<double>& values) {
+  return std::sqrt(std::inner_product(values.begin(), values.end(), values.begin(), 0.) /
+                   static_cast<double>(values.size()));
+}
+
 double percentile(std::vector<double> values, double part) {
   if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
   const double at = part * static_cast<double>(values.size() - 1), below = std::floor(at);
@@ -101,9 +111,8 @@ std::vector<double> block_rms(const std::vector<double>& values, double dt, doub
   const auto block = static_cast<std::size_t>(std::max(1., std::round(seconds / dt)));
   std::vector<double> roots;
   for (std::size_t first = 0; first + block <= values.size(); first += block) {
-    double square = 0.;
-    for (std::size_t i = first; i < first + block; ++i) square += values[i] * values[i];
-    roots.push_back(std::sqrt(square / static_cast<double>(block)));
+    const auto from = values.begin() + static_cast<std::ptrdiff_t>(first);
+    roots.push_back(rms_of({from, from + static_cast<std::ptrdiff_t>(block)}));
   }
   return roots;
 }

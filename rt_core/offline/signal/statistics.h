@@ -12,6 +12,10 @@ std::vector<double> sliding_mean(const std::vector<double>& distance,
 std::vector<double> sliding_rms(const std::vector<double>& distance,
                                 const std::vector<double>& values, double length, double step);
 
+/// Mean and root mean square of at least one value.
+double mean_of(const std::vector<double>& values);
+double rms_of(const std::vector<double>& values);
+
 /// The value that a part of the values, 0 to 1, does not exceed; straight between two of them. NaN
 /// of none.
 double percentile(std::vector<double> values, double part);

@@ -166,6 +166,8 @@ TEST_CASE("percentiles, blocks and lines", "[statistics]") {
   CHECK(percentile({4., 1., 3., 2., 5.}, .9) == Approx(4.6));
   CHECK(percentile({7.}, .3) == 7.);
   CHECK(std::isnan(percentile({}, .5)));
+  CHECK(mean_of({1., -2., 4.}) == 1.);
+  CHECK(rms_of({1., -2., 2.}) == Approx(std::sqrt(3.)));
   const std::vector<double> wave = sampled(sine_of_7_hz, 1e-3, 2500);
   const std::vector<double> blocks = block_rms(wave, 1e-3, 1.);
   REQUIRE(blocks.size() == 2);
