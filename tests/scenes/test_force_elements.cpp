@@ -120,6 +120,41 @@ TEST_CASE("an exponential and a slider that do not slide are springs", "[force_e
             "manchester_straight", {kRough, "step.duration_s=0.5"}, 1e-4);
 }
 
+TEST_CASE("friction remembers the displacement at which the step's force acts",
+          "[force_elements]") {
+  for (const char* shape : {"berg", "exponential"}) {
+    INFO(shape);
+    Simulation run(scene_with_elements(
+        element_on_bogie("own", std::string("point_m = [9.5, 0.3, 0.9]\ntype = \"friction\"\n"
+                                            "axis = \"y\"\nstiffness_n_per_m = 2e6\n"
+                                            "limit_n = 2e3\nshape = \"") +
+                                    shape + "\"\n"),
+        "manchester_straight", {kRough, "step.duration_s=0.5"}));
+    const RunnerModel& r = run.model().runner[0];
+    const ForceElement& e = r.force_element[0];
+    REQUIRE(r.force_elements == 1);
+    const auto displacement = [&] {
+      double z = 0.;
+      for (std::int32_t i = 0; i < r.size; ++i)
+        z += r.element_row[std::ptrdiff_t{r.size} * e.coordinate + i] * run.state.u[r.first + i];
+      return z;
+    };
+    const double* const memory = run.state.element_memory + e.memory;
+    double largest = 0., gap = 0., before = displacement();
+    Outputs out{};
+    for (int i = 0; i < 500; ++i) {
+      REQUIRE(advance_frame(run.model(), run.state, run.workspace, out) == Status::ok);
+      const double after = displacement(),
+                   met = before + run.model().scheme.theta * (after - before);
+      gap = std::max(gap, std::fabs(memory[0] - met));
+      largest = std::max(largest, std::fabs(met));
+      before = after;
+    }
+    CHECK(largest > 1e-4);
+    CHECK(gap < 1e-12 * largest);
+  }
+}
+
 TEST_CASE("a saturated damper gives its limit and no more", "[force_elements]") {
   const Traced run(scene_with_elements(
       element_on_bogie("own", kAlong + "type = \"nonlinear_damper\"\ntable = [[0.0, 0.0], [1e-3, "
