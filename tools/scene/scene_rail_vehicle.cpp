@@ -179,6 +179,8 @@ void read_rolling(const Table& root, const Scene& scene, RailVehicle& vehicle) {
   } else {
     RollingProfiles profiles = read_profiles(t, scene, vehicle.runner);
     vehicle.contact = profiles.contact;
+    vehicle.contact.profiles.pair.patches = static_cast<std::int32_t>(
+        t.integer("patches", 1, kMostLeast, vehicle.contact.profiles.pair.patches));
     vehicle.tables = std::move(profiles.tables);
   }
   vehicle.contact.creep = read_creep(t, vehicle.contact, radius, scene.rail, vehicle.friction);

@@ -71,7 +71,8 @@ ProfilePair ContactTables::pair() const {
           rail_.table(),
           half_distance_,
           radius_,
-          modulus_};
+          modulus_,
+          kMostLeast};
 }
 
 }  // namespace railstep

@@ -61,6 +61,7 @@ void describe(Archive& a, ProfileContact& c) {
   for (double* x : {&pair.half_distance, &pair.radius, &pair.modulus, &c.height, &c.point_y,
                     &c.point_z, &c.poisson})
     a.real(*x);
+  a.count(pair.patches, kMostLeast);
 }
 
 template <typename Archive>

@@ -217,8 +217,8 @@ int find_minima(const LowestLine& line, const Search& search, double least_depth
 }
 
 /// Leaves the deepest minima, in their order.
-int leave_deepest(Minimum* found, int count) noexcept {
-  while (count > kMostLeast) {
+int leave_deepest(Minimum* found, int count, int most) noexcept {
+  while (count > most) {
     int highest = 0;
     for (int i = 1; i < count; ++i)
       if (found[i].gap > found[highest].gap) highest = i;
@@ -331,7 +331,8 @@ int find_zones(const ProfilePair& pair, const WheelsetPlace& at, double least_de
   Search search;
   look(line, search);
   Minimum found[kMostMinima];
-  const int count = leave_deepest(found, find_minima(line, search, least_depth, found));
+  const int count =
+      leave_deepest(found, find_minima(line, search, least_depth, found), pair.patches);
   for (int i = 1; i < count; ++i)
     found[i].apart = apart(search, found[i - 1], found[i], least_depth);
   int zones = 0;

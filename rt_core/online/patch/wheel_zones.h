@@ -24,6 +24,7 @@ struct ProfilePair {
   double half_distance;  // from the wheelset's middle to the tread datum, m
   double radius;         // at the tread datum, m
   double modulus;        // E / (1 - nu^2) of two like bodies, N/m2
+  std::int32_t patches;  // at most so many least gaps are looked at, 1 to kMostLeast
 };
 
 /// Where a wheelset is over a rail, both in the frame of the rail's profile.
@@ -58,7 +59,7 @@ inline StripPatch patch_of(const WheelZone& zone) noexcept {
   return patch;
 }
 
-/// Finds the zones of a wheel about its least gaps, kMostLeast at most, in the order of s. A yawed
+/// Finds the zones of a wheel about its least gaps, the deepest ones, in the order of s. A yawed
 /// wheel touches where its normal has no component along the rail: ahead of the axle by r (roll -
 /// F') yaw, F' the slope of the wheel's growth. Gaps have the yaw to second order, slopes to first
 /// order. Two least gaps are one zone where the deeper one's overlap, by the law of patches, goes

@@ -118,6 +118,26 @@ TEST_CASE("a wheel that yaws and rolls touches where its whole surface does", "[
       }
 }
 
+TEST_CASE("of several least gaps as many are looked at as asked for, the deepest ones",
+          "[profile]") {
+  const WheelRail profiles = s1002_on_60e1();
+  const ContactTables tables(profiles, kSteel);
+  int several = 0;
+  for (double shift = 0.; shift < 8e-3; shift += 2e-5) {
+    const WheelsetPlace at{shift, loaded(profiles, kSteel, shift, 6e4).right.height, 0., 0.};
+    ProfilePair pair = tables.pair();
+    WheelZone all[kMostZones], one[kMostZones];
+    const int count = find_zones(pair, at, kLeastDepth, all);
+    pair.patches = 1;
+    REQUIRE(find_zones(pair, at, kLeastDepth, one) == 1);
+    CHECK(one[0].share == 1.);
+    for (int i = 0; i < count; ++i)
+      CHECK(all[i].depth / all[i].cosine <= one[0].depth / one[0].cosine + 1e-12);
+    several += count > 1 ? 1 : 0;
+  }
+  CHECK(several > 5);
+}
+
 TEST_CASE("a wheel beside its rail has no zone", "[profile]") {
   const WheelRail profiles = s1002_on_60e1();
   const ContactTables tables(profiles, kSteel);

@@ -57,6 +57,13 @@ TEST_CASE("a value that the contact of wheels and rails follows from is refused 
                 {"[rail]", "crown_radius_m = 300000000 is out of range", "E-KEY-05"});
 }
 
+TEST_CASE("patches are counted from one on, and are those of profiles", "[bad_input][cli]") {
+  for (const char* count : {"0", "4"})
+    run_refuses(shipped("manchester_s1002"), {std::string("contact.patches=") + count},
+                {"[contact]", "patches", "E-KEY-05"});
+  run_refuses(shipped("manchester_ring"), {"contact.patches=1"}, {"'patches'", "E-KEY-02"});
+}
+
 TEST_CASE("a key given twice is refused at its second place", "[bad_input][cli]") {
   text_refused("bays = 16", "bays = 16\nbays = 3", {"bad.toml:9:", "bays"});
   text_refused(moving_load() + "[support]\nat = \"foot\"\n", {"bad.toml:46:", "support"});
