@@ -42,13 +42,13 @@ void print_front(const ParetoResult& result) {
   const double floor = floor_of(result.reference);
   fmt::print("reference  {}; own error {:.1e}\njudged     {}, from {:g} s on\n\n",
              result.reference.how, result.reference.error, judged_text(result), result.judged.from);
-  fmt::print("{:>9} {:>14} {:>9} {:>9} {:>9} {:>10}  front\n", "frame, us", "error", "step",
-             "condens.", "mesh", "flops");
+  fmt::print("{:>9} {:>14} {:>9} {:>9} {:>9} {:>9} {:>10}  front\n", "frame, us", "error", "step",
+             "changes", "condens.", "mesh", "flops");
   for (const SettingRow& row : result.rows)
     if (row.on_front)
-      fmt::print("{:>9.3g} {:>14} {:>9.1e} {:>9.1e} {:>9.1e} {:>10}  {}\n", row.cost.us,
-                 error_text(row.errors.judged, floor), row.parts.step, row.parts.condensation,
-                 row.parts.mesh, row.cost.flops, words_of(row.setting));
+      fmt::print("{:>9.3g} {:>14} {:>9.1e} {:>9.1e} {:>9.1e} {:>9.1e} {:>10}  {}\n", row.cost.us,
+                 error_text(row.errors.judged, floor), row.parts.step, row.parts.changes,
+                 row.parts.condensation, row.parts.mesh, row.cost.flops, words_of(row.setting));
   std::size_t failed = 0;
   for (const SettingRow& row : result.rows) failed += row.failure.empty() ? 0 : 1;
   fmt::print("\n{} settings, {} made no result\n", result.rows.size(), failed);
@@ -103,9 +103,16 @@ Command add_pareto(CLI::App& app) {
       {"with commas; a model is KIND[:AMOUNT][:bare][:UNKNOWNS]",
        "with commas: generalised-alpha:RHO_INF, newmark, hht:ALPHA, backward-euler, tr-bdf2; of "
        "condensed models held:RHO_INF, discrete-gradient",
-       "what counts as the error: deflection, contact_force, support_force, sensor, stress, or a "
-       "column; repeatable; by default the first that there is"},
+       "what counts as the error: deflection, contact_force, lateral_force, sum_of_lateral_forces, "
+       "support_force, sensor, stress, or a column; repeatable; by default the first that there "
+       "is"},
       asked.overrides, asked.choices, asked.judged);
+  sub->add_option(
+         "--vary", asked.choices.varied,
+         "key.path=a,b,c: values of another key, repeatable; the reference has the scene's")
+      ->type_name("KEY=A,B")
+      ->take_all()
+      ->allow_extra_args(false);
   sub->add_option("--reference-error", asked.reference_error,
                   "refine the reference until its own error is below")
       ->check(within(1e-15, 1.));

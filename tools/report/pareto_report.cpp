@@ -17,30 +17,38 @@ constexpr const char* kAxes =
     "set grid lc rgb '#dddddd'\nset tics nomirror\nset border 3\nset logscale xy\n"
     "set format y '10^{%L}'\nset key outside right top Left reverse samplen 1\n";
 
-std::vector<std::string> models_of(const ParetoResult& result) {
-  std::vector<std::string> models;
+/// The series of a setting: its model, and how it changes the scene. It may stand in single quotes.
+std::string series_of(const Setting& setting) {
+  std::string series = fmt::format("{} {}", setting.model, fmt::join(setting.changes, " "));
+  std::replace(series.begin(), series.end(), '\'', '"');
+  return series;
+}
+std::vector<std::string> all_series(const ParetoResult& result) {
+  std::vector<std::string> all;
   for (const SettingRow& row : result.rows)
-    if (std::find(models.begin(), models.end(), row.setting.model) == models.end())
-      models.push_back(row.setting.model);
-  return models;
+    if (const std::string own = series_of(row.setting);
+        std::find(all.begin(), all.end(), own) == all.end())
+      all.push_back(own);
+  return all;
 }
 
-/// Error over a cost, a series of points for each model, and the front as a line.
+/// Error over a cost, a series of points for each model and change, and the front as a line.
 std::string cost_plot(const ParetoResult& result, const std::string& name, const std::string& label,
                       double (*cost)(const SettingRow&)) {
   const double floor = floor_of(result.reference);
   std::string data, plot;
   int number = 0;
-  for (const std::string& model : models_of(result)) {
+  for (const std::string& series : all_series(result)) {
     std::string points;
     for (const SettingRow& row : result.rows)
-      if (row.setting.model == model && row.failure.empty() && std::isfinite(row.errors.judged))
+      if (series_of(row.setting) == series && row.failure.empty() &&
+          std::isfinite(row.errors.judged))
         points += fmt::format("{:.9g} {:.9g}\n", cost(row), std::max(row.errors.judged, floor));
     ++number;
     if (points.empty()) continue;
     data += fmt::format("$m{} << EOD\n{}EOD\n", number, points);
-    plot += fmt::format(" $m{0} with points pt {1} ps .7 lc {0} title \"{2}\",", number,
-                        4 + number % 10, model);
+    plot += fmt::format(" $m{0} with points pt {1} ps .7 lc {0} title '{2}' noenhanced,", number,
+                        4 + number % 10, series);
   }
   std::vector<const SettingRow*> front;
   for (const SettingRow& row : result.rows)
@@ -85,18 +93,20 @@ std::string cell(double value) {
 
 std::string table_row(const ParetoResult& result, const SettingRow& row) {
   const Setting& own = row.setting;
-  std::string line = fmt::format("<tr{}><td>{}</td><td>{}</td><td>{}</td><td>{}</td>",
-                                 row.on_front ? " class=front" : "", own.model,
+  std::string line = fmt::format("<tr{}><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td>",
+                                 row.on_front ? " class=front" : "",
+                                 escaped(fmt::format("{}", fmt::join(own.changes, " "))), own.model,
                                  own.elements_per_bay, row.kept_unknowns, own.scheme);
   line += cell(1e6 * own.step);
   if (!row.failure.empty())
-    return line + fmt::format("<td data-v='1e300' colspan=9>{}</td></tr>\n", escaped(row.failure));
+    return line + fmt::format("<td data-v='1e300' colspan=10>{}</td></tr>\n", escaped(row.failure));
   const double floor = floor_of(result.reference), error = row.errors.judged;
   line += fmt::format("<td data-v='{:.9g}'>{}</td>", std::max(error, floor),
                       escaped(error_text(error, floor)));
   for (const double value :
-       {row.parts.step, row.parts.condensation, row.parts.mesh, row.cost.us, row.cost.least,
-        row.cost.most, static_cast<double>(row.cost.flops), static_cast<double>(row.cost.bytes)})
+       {row.parts.step, row.parts.changes, row.parts.condensation, row.parts.mesh, row.cost.us,
+        row.cost.least, row.cost.most, static_cast<double>(row.cost.flops),
+        static_cast<double>(row.cost.bytes)})
     line += cell(value);
   for (const KindError& kind : row.errors.kinds) line += cell(kind.largest) + cell(kind.rms);
   return line + fmt::format("<td>{}</td></tr>\n", fmt::join(row.status, " "));
@@ -105,8 +115,9 @@ std::string table_row(const ParetoResult& result, const SettingRow& row) {
 std::string table(const ParetoResult& result) {
   std::string head;
   for (const char* name :
-       {"model", "elements a bay", "kept unknowns", "scheme", "step, us", "error", "of the step",
-        "of the condensation", "of the mesh", "frame, us", "least", "most", "flops", "bytes"})
+       {"changes", "model", "elements a bay", "kept unknowns", "scheme", "step, us", "error",
+        "of the step", "of the changes", "of the condensation", "of the mesh", "frame, us", "least",
+        "most", "flops", "bytes"})
     head += fmt::format("<th>{}</th>", name);
   for (const SettingRow& row : result.rows)
     if (!row.errors.kinds.empty()) {
@@ -153,7 +164,8 @@ std::string pareto_report(const std::string& title, const ParetoResult& result) 
       "errors below ten times that are not told apart. Cost: of a frame of {7:g} s, median of {8} "
       "timings, each in turn with one model that stays the same, and the bounds that a model "
       "states. "
-      "Parts: of the step against small steps, of the condensation against full order on its mesh, "
+      "Parts: of the step against small steps, of changes of the scene against the scene without "
+      "them, of the condensation against full order on its mesh, "
       "of the mesh against the reference.</p><h2>Which to take</h2><p>Cheapest of those whose "
       "error, and the sum of its parts, is at most that:</p><ul>{9}</ul>"
       "<h2>Error over time</h2>{10}<h2>Error over flops</h2>{11}<h2>Error over frequency</h2>"
@@ -167,6 +179,15 @@ std::string pareto_report(const std::string& title, const ParetoResult& result) 
       table(result), kSort);
 }
 
+namespace {
+
+std::string csv_text(std::string text) {
+  std::replace(text.begin(), text.end(), '"', '\'');
+  return text.empty() ? text : fmt::format("\"{}\"", text);
+}
+
+}  // namespace
+
 std::string pareto_csv(const ParetoResult& result) {
   std::string text =
       "model,elements_per_bay,kept_unknowns,scheme,step_s,error,error_step,error_condensation,"
@@ -174,7 +195,7 @@ std::string pareto_csv(const ParetoResult& result) {
       "on_front";
   for (const OutputKind kind : kOutputKinds)
     text += fmt::format(",{0}_largest,{0}_rms", name_of(kind));
-  text += ",failure\n";
+  text += ",error_changes,changes,failure\n";
   for (const SettingRow& row : result.rows) {
     text += fmt::format(
         "{},{},{},{},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{},{},{}",
@@ -189,9 +210,9 @@ std::string pareto_csv(const ParetoResult& result) {
                   ? std::string(",,")
                   : fmt::format(",{:.17g},{:.17g}", own->largest, own->rms);
     }
-    std::string failure = row.failure;
-    std::replace(failure.begin(), failure.end(), '"', '\'');
-    text += failure.empty() ? ",\n" : fmt::format(",\"{}\"\n", failure);
+    text += fmt::format(",{:.17g},{},{}\n", row.parts.changes,
+                        csv_text(fmt::format("{}", fmt::join(row.setting.changes, " "))),
+                        csv_text(row.failure));
   }
   return text;
 }

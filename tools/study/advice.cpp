@@ -21,9 +21,9 @@ std::string sentence(const ParetoResult& result, double asked) {
   if (const SettingRow* const row = cheapest(result.rows, asked))
     return fmt::format(
         "For {:g}: {}. {:.3g} us a frame ({:.3g} to {:.3g}), at most {} flops; error {}, of which "
-        "step {:.1e}, condensation {:.1e}, mesh {:.1e}.{}",
+        "step {:.1e}, changes {:.1e}, condensation {:.1e}, mesh {:.1e}.{}",
         asked, words_of(row->setting), row->cost.us, row->cost.least, row->cost.most,
-        row->cost.flops, error_text(row->errors.judged, floor), row->parts.step,
+        row->cost.flops, error_text(row->errors.judged, floor), row->parts.step, row->parts.changes,
         row->parts.condensation, row->parts.mesh,
         asked < floor
             ? fmt::format(" The reference itself is known to {:.1e} only.", result.reference.error)
@@ -31,10 +31,10 @@ std::string sentence(const ParetoResult& result, double asked) {
   const SettingRow* const best = best_of(result.rows);
   if (best == nullptr) return fmt::format("For {:g}: no setting ran.", asked);
   return fmt::format(
-      "For {:g}: none of these. The best is {}, with error {} (step {:.1e}, condensation {:.1e}, "
-      "mesh {:.1e}).",
+      "For {:g}: none of these. The best is {}, with error {} (step {:.1e}, changes {:.1e}, "
+      "condensation {:.1e}, mesh {:.1e}).",
       asked, words_of(best->setting), error_text(best->errors.judged, floor), best->parts.step,
-      best->parts.condensation, best->parts.mesh);
+      best->parts.changes, best->parts.condensation, best->parts.mesh);
 }
 
 }  // namespace

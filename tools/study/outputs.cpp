@@ -20,6 +20,8 @@ struct KindNames {
 const std::vector<KindNames> kNames = {
     {OutputKind::deflection, "deflection", {".deflection_z_m", ".rail_z_m"}},
     {OutputKind::contact_force, "contact_force", {".force_z_mean_n", ".q_n"}},
+    {OutputKind::lateral_force, "lateral_force", {".y_n"}},
+    {OutputKind::sum_of_lateral_forces, "sum_of_lateral_forces", {".sum_y_n"}},
     {OutputKind::support_force, "support_force", {".force_z_n"}},
     {OutputKind::sensor, "sensor", {".dz_m"}},
     {OutputKind::stress, "stress", {".stress_x_pa"}}};
@@ -92,8 +94,9 @@ void check_outputs(const TraceTable& got, const Judged& judged) {
     if (!found)
       throw InputError("E-STUDY-02",
                        fmt::format("output \"{}\" is not in the trace; expected deflection, "
-                                   "contact_force, support_force, sensor, stress, or one of their "
-                                   "columns, as far as the trace has them",
+                                   "contact_force, lateral_force, sum_of_lateral_forces, "
+                                   "support_force, sensor, stress, or one of their columns, as far "
+                                   "as the trace has them",
                                    own));
   }
 }

@@ -8,14 +8,25 @@
 namespace railstep {
 
 /// The columns of traces that are compared, a kind of output each.
-enum class OutputKind { deflection, contact_force, support_force, sensor, stress };
-inline constexpr OutputKind kOutputKinds[] = {OutputKind::deflection, OutputKind::contact_force,
-                                              OutputKind::support_force, OutputKind::sensor,
-                                              OutputKind::stress};
+enum class OutputKind {
+  deflection,
+  contact_force,
+  lateral_force,
+  sum_of_lateral_forces,
+  support_force,
+  sensor,
+  stress
+};
+inline constexpr OutputKind kOutputKinds[] = {
+    OutputKind::deflection,    OutputKind::contact_force,
+    OutputKind::lateral_force, OutputKind::sum_of_lateral_forces,
+    OutputKind::support_force, OutputKind::sensor,
+    OutputKind::stress};
 
 /// "deflection": of the rail under loads and wheels (<load>.deflection_z_m, <wheel>.rail_z_m);
 /// "contact_force": mean of a frame (<wheel>.force_z_mean_n), which is the force below the frames'
-/// own frequency, of vehicles in space the force at its end (<wheel>.q_n); "support_force"
+/// own frequency, of vehicles in space the force at its end (<wheel>.q_n); of these also
+/// "lateral_force" (<wheel>.y_n) and "sum_of_lateral_forces" (<wheelset>.sum_y_n); "support_force"
 /// (support_<i>.force_z_n); "sensor" (<sensor>.dz_m); "stress" of gauges (<sensor>.stress_x_pa).
 const char* name_of(OutputKind kind);
 

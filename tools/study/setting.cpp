@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <utility>
 
+#include "sweep/sweep_grid.h"
 #include "text/read.h"
 
 namespace railstep {
@@ -99,6 +100,22 @@ bool has_hertz(const Scene& scene) {
                      [](const VehicleScene& v) { return v.contact == WheelContactKind::hertz; });
 }
 
+/// What is varied, unless models, meshes, schemes and steps are what chooses it.
+Grid changes_of(const std::vector<std::string>& varied) {
+  for (const std::string& option : varied) {
+    const std::string key = read_varied(option).key;
+    for (const char* const own :
+         {"condense", "track.unknowns", "track.elements_per_bay", "step.contact", "step.scheme",
+          "step.rho_inf", "step.hht_alpha", "step.dt_s", "step.frame_s"})
+      if (key.starts_with(own))
+        throw InputError("E-STUDY-16",
+                         fmt::format("--vary {}: the study chooses this by itself; expected "
+                                     "--models, --meshes, --schemes or --steps",
+                                     option));
+  }
+  return {{}, varied};
+}
+
 /// From a frame to half the scene's step, the longest first.
 std::vector<double> default_steps(const StepScene& step) {
   std::int64_t count = 2 * step.steps_per_frame;
@@ -132,13 +149,16 @@ std::vector<std::string> overrides_of(const Setting& setting) {
     overrides.push_back(fmt::format("track.elements_per_bay={}", setting.elements_per_bay));
   add_scheme(setting.scheme, overrides);
   overrides.push_back(fmt::format("step.dt_s={:.17g}", setting.step));
+  overrides.insert(overrides.end(), setting.changes.begin(), setting.changes.end());
   return overrides;
 }
 
 std::string words_of(const Setting& setting) {
-  return fmt::format("{}, {} element{} a bay, {}, {:.6g} us", setting.model,
-                     setting.elements_per_bay, setting.elements_per_bay == 1 ? "" : "s",
-                     setting.scheme, 1e6 * setting.step);
+  std::string words =
+      fmt::format("{}, {} element{} a bay, {}, {:.6g} us", setting.model, setting.elements_per_bay,
+                  setting.elements_per_bay == 1 ? "" : "s", setting.scheme, 1e6 * setting.step);
+  for (const std::string& change : setting.changes) words += ", " + change;
+  return words;
 }
 
 Choices filled(Choices own, const Scene& scene) {
@@ -147,6 +167,7 @@ Choices filled(Choices own, const Scene& scene) {
   if (!own.meshes.empty()) all.meshes = std::move(own.meshes);
   if (!own.schemes.empty()) all.schemes = std::move(own.schemes);
   if (!own.steps.empty()) all.steps = std::move(own.steps);
+  all.varied = std::move(own.varied);
   std::sort(all.steps.rbegin(), all.steps.rend());
   return all;
 }
@@ -175,12 +196,15 @@ bool goes_with(const std::string& model, const std::string& scheme) {
 }
 
 std::vector<Setting> settings_of(const Choices& choices) {
+  const Grid changes = changes_of(choices.varied);
   std::vector<Setting> all;
-  for (const std::string& model : choices.models)
-    for (const int mesh : choices.meshes)
-      for (const std::string& scheme : choices.schemes)
-        for (const double step : choices.steps)
-          if (goes_with(model, scheme)) all.push_back({model, mesh, scheme, step});
+  for (std::int64_t run = 0; run < changes.runs(); ++run)
+    for (const std::string& model : choices.models)
+      for (const int mesh : choices.meshes)
+        for (const std::string& scheme : choices.schemes)
+          for (const double step : choices.steps)
+            if (goes_with(model, scheme))
+              all.push_back({model, mesh, scheme, step, changes.changes(run)});
   return all;
 }
 

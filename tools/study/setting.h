@@ -17,6 +17,8 @@ struct Setting {
   /// "backward-euler", "tr-bdf2"; of condensed models "held:RHO", "discrete-gradient".
   std::string scheme;
   double step;  // s
+  /// "key=value" over the scene besides.
+  std::vector<std::string> changes = {};
 };
 
 bool is_condensed(const std::string& model);
@@ -29,7 +31,7 @@ int mesh_of(const Scene& scene);
 /// or a scheme that there is not.
 std::vector<std::string> overrides_of(const Setting& setting);
 
-/// "modal:2, 2 elements a bay, held:0.6, 50 us"
+/// "modal:2, 2 elements a bay, held:0.6, 50 us, contact.creep="polach""
 std::string words_of(const Setting& setting);
 
 /// Lists of which all that go together are taken.
@@ -37,7 +39,8 @@ struct Choices {
   std::vector<std::string> models;
   std::vector<int> meshes;  // elements per bay
   std::vector<std::string> schemes;
-  std::vector<double> steps;  // s
+  std::vector<double> steps;             // s
+  std::vector<std::string> varied = {};  // "key=a,b,c" each
 };
 
 /// The choices of a study: models of both ends of the ladder, meshes and steps about the scene's
@@ -50,7 +53,8 @@ Choices filled(Choices choices, const Scene& scene);
 /// Whether a model is stepped by a scheme.
 bool goes_with(const std::string& model, const std::string& scheme);
 
-/// Model by model, mesh by mesh, scheme by scheme, the longest step first.
+/// Change by change, model by model, mesh by mesh, scheme by scheme, the longest step first. Throws
+/// InputError where what is varied is not a list, or is one of the other choices.
 std::vector<Setting> settings_of(const Choices& choices);
 
 /// The scheme by which a model is run with small steps. In full order generalised-alpha, but where

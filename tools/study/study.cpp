@@ -17,12 +17,19 @@ Study::Study(Studied studied, Reference reference, double small_step)
       small_step_(small_step),
       step_(*read_scene(studied_.file, studied_.overrides).step) {}
 
-const TraceTable& Study::by_small_steps(const std::string& model, int elements_per_bay) {
-  const auto known = small_.find({model, elements_per_bay});
+const TraceTable& Study::by_small_steps(const std::string& model, int elements_per_bay,
+                                        const std::vector<std::string>& changes) {
+  const Setting setting{model, elements_per_bay, plain_scheme(model, step_), small_step_, changes};
+  const auto known = small_.find(words_of(setting));
   if (known != small_.end()) return known->second;
-  TraceTable trace =
-      run_of(studied_, {model, elements_per_bay, plain_scheme(model, step_), small_step_});
-  return small_.emplace(std::pair{model, elements_per_bay}, std::move(trace)).first->second;
+  return small_.emplace(words_of(setting), run_of(studied_, setting)).first->second;
+}
+
+double Study::change_error(const Setting& own) {
+  if (own.changes.empty()) return 0.;
+  return errors_of(by_small_steps(own.model, own.elements_per_bay, own.changes),
+                   by_small_steps(own.model, own.elements_per_bay), studied_.judged)
+      .judged;
 }
 
 double Study::mesh_error(int elements_per_bay) {
@@ -54,9 +61,10 @@ SettingRow Study::row_of(const Setting& setting) try {
     row.failure = nonfinite_sentence(run, record.first_bad_unknown);
   if (!row.failure.empty()) return row;
   row.parts = {
-      errors_of(trace, by_small_steps(setting.model, setting.elements_per_bay), studied_.judged)
+      errors_of(trace, by_small_steps(setting.model, setting.elements_per_bay, setting.changes),
+                studied_.judged)
           .judged,
-      condensation_error(setting.model, setting.elements_per_bay),
+      change_error(setting), condensation_error(setting.model, setting.elements_per_bay),
       mesh_error(setting.elements_per_bay)};
   row.cost = timing_->cost_of(run);
   return row;

@@ -2,7 +2,6 @@
 #include <map>
 #include <memory>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "study/frame_cost.h"
@@ -23,6 +22,8 @@ class Study {
   /// Errors of the reference, and of a model with small steps; kept once they are known.
   /// @returns the error against the reference of full order on a mesh by small steps
   double mesh_error(int elements_per_bay);
+  /// @returns what changes of the scene make of a model, both by small steps
+  double change_error(const Setting& setting);
   /// @returns the difference of a model by small steps from full order on its mesh, by small steps
   double condensation_error(const std::string& model, int elements_per_bay);
 
@@ -30,14 +31,15 @@ class Study {
   const Studied& studied() const { return studied_; }
 
  private:
-  const TraceTable& by_small_steps(const std::string& model, int elements_per_bay);
+  const TraceTable& by_small_steps(const std::string& model, int elements_per_bay,
+                                   const std::vector<std::string>& changes = {});
 
   Studied studied_;
   Reference reference_;
   double small_step_;
-  StepScene step_;  // of the scene
-  std::map<std::pair<std::string, int>, TraceTable> small_;
-  std::unique_ptr<Timing> timing_;  // once something is timed
+  StepScene step_;                           // of the scene
+  std::map<std::string, TraceTable> small_;  // by words_of()
+  std::unique_ptr<Timing> timing_;           // once something is timed
 };
 
 /// Where a setting's error begins to be told apart: ten times the reference's own.

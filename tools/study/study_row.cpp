@@ -31,10 +31,12 @@ Json to_json(const SettingRow& row) {
           {"kept_unknowns", row.kept_unknowns},
           {"scheme", row.setting.scheme},
           {"step_s", row.setting.step},
+          {"changes", row.setting.changes},
           {"error", row.errors.judged},
           {"error_parts",
            {{"mesh", row.parts.mesh},
             {"condensation", row.parts.condensation},
+            {"changes", row.parts.changes},
             {"step", row.parts.step},
             {"sum", row.parts.sum()}}},
           {"errors", std::move(kinds)},
@@ -55,10 +57,11 @@ SettingRow row_from_json(const Json& json) {
   json.at("kept_unknowns").get_to(row.kept_unknowns);
   json.at("scheme").get_to(row.setting.scheme);
   json.at("step_s").get_to(row.setting.step);
+  json.at("changes").get_to(row.setting.changes);
   row.errors.judged = number(json.at("error"));
   const Json& parts = json.at("error_parts");
-  row.parts = {number(parts.at("step")), number(parts.at("condensation")),
-               number(parts.at("mesh"))};
+  row.parts = {number(parts.at("step")), number(parts.at("changes")),
+               number(parts.at("condensation")), number(parts.at("mesh"))};
   for (const auto& [name, own] : json.at("errors").items())
     row.errors.kinds.push_back(
         {kind_named(name), number(own.at("largest")), number(own.at("rms"))});

@@ -11,10 +11,11 @@
 namespace railstep {
 
 /// An error, told apart: of the setting against the reference, and on the way there
-///   setting - its model by small steps - full order on its mesh by small steps - reference.
+///   setting - its model by small steps - the same without the setting's changes of the scene -
+///   full order on its mesh by small steps - reference.
 struct ErrorParts {
-  double step = 0., condensation = 0., mesh = 0.;
-  [[nodiscard]] double sum() const { return step + condensation + mesh; }
+  double step = 0., changes = 0., condensation = 0., mesh = 0.;
+  [[nodiscard]] double sum() const { return step + changes + condensation + mesh; }
 };
 
 /// One setting of a study with its error and its cost.

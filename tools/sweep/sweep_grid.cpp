@@ -121,19 +121,21 @@ std::vector<std::string> Grid::values(std::int64_t run) const {
   return found;
 }
 
+std::vector<std::string> Grid::changes(std::int64_t run) const {
+  std::vector<std::string> own = values(run);
+  for (std::size_t k = 0; k < varied_.size(); ++k)
+    own[k] = fmt::format("{}={}", varied_[k].key, own[k]);
+  return own;
+}
+
 std::vector<std::string> Grid::overrides(std::int64_t run) const {
   std::vector<std::string> all = set_;
-  all.reserve(set_.size() + varied_.size());
-  const std::vector<std::string> own = values(run);
-  for (std::size_t k = 0; k < varied_.size(); ++k)
-    all.push_back(fmt::format("{}={}", varied_[k].key, own[k]));
+  for (std::string& own : changes(run)) all.push_back(std::move(own));
   return all;
 }
 
 std::string Grid::words(std::int64_t run) const {
-  const std::vector<std::string> all = overrides(run);
-  return fmt::format(
-      "{}", fmt::join(all.begin() + static_cast<std::ptrdiff_t>(set_.size()), all.end(), ", "));
+  return fmt::format("{}", fmt::join(changes(run), ", "));
 }
 
 std::vector<std::int64_t> Shard::runs(std::int64_t all) const {

@@ -29,6 +29,8 @@ class Grid {
   const std::vector<VariedKey>& varied() const { return varied_; }
   /// The values of a run, key by key.
   std::vector<std::string> values(std::int64_t run) const;
+  /// "key=value" of what is varied in a run.
+  std::vector<std::string> changes(std::int64_t run) const;
   /// "key=value" of a run: what is set, then what is varied.
   std::vector<std::string> overrides(std::int64_t run) const;
   /// "track.bays=24, step.dt_s=1e-4"

@@ -39,7 +39,7 @@ void add_files(const Table& table, std::initializer_list<const char*> keys,
     if (table.has(key)) files.push_back(table.path(key));
 }
 
-/// All that a scene refers to: sections, a record of irregularities, vehicles.
+/// All that a scene refers to: sections, profiles, a record of irregularities, vehicles.
 std::vector<std::filesystem::path> files_of(const Table& root) {
   std::vector<std::filesystem::path> files;
   if (const std::optional<Table> rail = root.table_if("rail")) {
@@ -47,6 +47,8 @@ std::vector<std::filesystem::path> files_of(const Table& root) {
     if (const std::optional<Table> right = rail->table_if("right"))
       add_files(*right, {"profile", "section"}, files);
   }
+  if (const std::optional<Table> contact = root.table_if("contact"))
+    add_files(*contact, {"wheel_profile", "rail_profile"}, files);
   for (const Table& beam : root.tables("beam")) add_files(beam, {"profile", "section"}, files);
   if (const std::optional<Table> rough = root.table_if("irregularity"))
     add_files(*rough, {"file"}, files);

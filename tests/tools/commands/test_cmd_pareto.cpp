@@ -153,6 +153,28 @@ TEST_CASE("pareto's error is the one that the traces show", "[pareto]") {
   CHECK_THAT(result["reference"]["how"].get<std::string>(), Contains("r.csv"));
 }
 
+TEST_CASE("pareto varies other keys, and says what they change", "[pareto]") {
+  const auto folder = fresh_folder("pareto_vary");
+  const std::string csv = (folder / "t.csv").string(), page = (folder / "t.html").string();
+  const Ran ran = pareto(fmt::format(
+      "{} --set track.bays=8 --set step.duration_s=0.14 --models modal:2 --meshes 2 --schemes "
+      "held:0.6 --steps 1e-4 --reference-levels 2 --vary support.stiffness_z_n_per_m=3e7,3.1e7 "
+      "--json --csv {} --report {}",
+      kMovingLoad, csv, page));
+  CAPTURE(ran.err);
+  REQUIRE(ran.code == 0);
+  const json rows = json::parse(ran.out)["rows"];
+  REQUIRE(rows.size() == 2);
+  CHECK(rows[0]["changes"] == json{"support.stiffness_z_n_per_m=3e7"});
+  CHECK(rows[0]["error_parts"]["changes"] == 0.);  // the scene's own
+  CHECK(rows[1]["error_parts"]["changes"].get<double>() > 1e-2);
+  CHECK(rows[1]["error_parts"]["changes"].get<double>() < 4e-2);
+  for (const json& row : rows)
+    CHECK(row["error"].get<double>() <= row["error_parts"]["sum"].get<double>() * (1. + 1e-9));
+  CHECK_THAT(text_of(csv), Contains(",\"support.stiffness_z_n_per_m=3.1e7\",\n"));
+  CHECK_THAT(text_of(page), Contains("<td>support.stiffness_z_n_per_m=3.1e7</td>"));
+}
+
 TEST_CASE("pareto continues where it was stopped", "[pareto]") {
   const auto folder = fresh_folder("pareto_resume");
   const std::string kept = (folder / "k.jsonl").string();
@@ -184,6 +206,8 @@ TEST_CASE("pareto refuses in one clear message what it cannot do", "[pareto]") {
       {kMovingLoad + " --steps 7e-4", "frame_s"},
       {kMovingLoad + " --steps 1e-4,x", "--steps"},
       {kMovingLoad + " --from 1", "E-STUDY-08"},
+      {kMovingLoad + " --vary step.dt_s=1e-4", "E-STUDY-16"},
+      {kMovingLoad + " --vary track.bay=8", "track.bay"},
       {kMovingLoad + " --resume /no/such/folder/x", "/no/such/folder/x"},
       {kScenes + "open_track.toml", "E-STUDY-07"},
       {kScenes + "double_pendulum.toml", "E-STUDY-06"},

@@ -54,6 +54,39 @@ TEST_CASE("every default setting makes a scene with that setting", "[study]") {
   }
 }
 
+TEST_CASE("what is varied is a setting's own, and no choice that has a list", "[study]") {
+  Choices choices{{"modal:1"}, {2}, {"held:0.6"}, {1e-4}};
+  choices.varied = {"track.bays=12,16", "support.damping_z_n_s_per_m=5e4"};
+  const std::vector<Setting> all = settings_of(choices);
+  REQUIRE(all.size() == 2);
+  CHECK(all[1].changes ==
+        std::vector<std::string>{"track.bays=16", "support.damping_z_n_s_per_m=5e4"});
+  CHECK(overrides_of(all[1]).back() == "support.damping_z_n_s_per_m=5e4");
+  CHECK(words_of(all[0]) != words_of(all[1]));
+  for (const char* own :
+       {"step.dt_s=1e-4,2e-4", "condense.modes_per_bay=1,2", "track.elements_per_bay=2"}) {
+    choices.varied = {own};
+    CHECK_THROWS_WITH(settings_of(choices), Contains("E-STUDY-16") && Contains(own));
+  }
+  choices.varied = {"track.bays=12", "track.bays=16"};
+  CHECK_THROWS_WITH(settings_of(choices), Contains("E-SWEEP-10"));
+}
+
+TEST_CASE("forces of vehicles in space are told apart by their directions", "[study]") {
+  const std::vector<std::string> names = {"time_s", "car.w.q_n", "car.w.y_n", "car.set.sum_y_n"};
+  const TraceTable reference = table(names, {0., 100., 10., 4.});
+  const TraceErrors errors =
+      errors_of(table(names, {0., 101., 9.5, 3.}), reference, {0., {"lateral_force"}});
+  REQUIRE(errors.kinds.size() == 3);
+  CHECK(errors.kinds[0].kind == OutputKind::contact_force);
+  CHECK(errors.kinds[0].largest == Approx(.01));
+  CHECK(errors.kinds[1].kind == OutputKind::lateral_force);
+  CHECK(errors.kinds[1].largest == Approx(.05));
+  CHECK(errors.kinds[2].kind == OutputKind::sum_of_lateral_forces);
+  CHECK(errors.kinds[2].largest == Approx(.25));
+  CHECK(errors.judged == Approx(.05));
+}
+
 TEST_CASE("words of models and schemes are read to their last letter", "[study]") {
   const auto overrides = [](const std::string& model, const std::string& scheme) {
     return overrides_of({model, 2, scheme, 1e-4});

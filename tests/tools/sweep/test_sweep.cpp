@@ -67,4 +67,13 @@ TEST_CASE("a run's key depends on the program, the scene, its overrides and all 
   CHECK(key({rail, "track.bays=40"}, 0., "1") != plain);
   std::ofstream(folder / "rail.toml", std::ios::app) << "# another file\n";
   CHECK(key({rail}, 0., "1") != plain);
+  // Profiles of wheels on rails count, too.
+  std::filesystem::copy(source + "profiles/s1002.toml", folder / "wheel.toml");
+  const std::string wheel = "contact.wheel_profile=\"" + (folder / "wheel.toml").string() + "\"";
+  const auto of_car = [&] {
+    return RunKeys("1", 0.).of(source + "scenes/manchester_s1002.toml", {wheel});
+  };
+  const std::string before = of_car();
+  std::ofstream(folder / "wheel.toml", std::ios::app) << "# another file\n";
+  CHECK(of_car() != before);
 }
