@@ -1,4 +1,5 @@
 // Vehicles in space on a design line.
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numeric>
@@ -288,5 +289,45 @@ TEST_CASE("a vehicle with profiles starts in a curve of 100 m and stays as it st
     const double v = std::stod(speed), roll = std::asin(.06 / 1.5);
     CHECK(sum ==
           Approx(kMass * (9.81 * std::cos(roll) + v * v * .01 * std::sin(roll))).epsilon(5e-4));
+  }
+}
+
+namespace {
+
+/// A vehicle with profiles that runs into a curve through a transition of 50 m, or starts in it.
+struct Led {
+  const char *vehicle, *dt;
+  double radius, cant, speed;
+
+  Scene scene(bool runs_in) const {
+    const std::string from = runs_in ? "[0.0,0.0],[20.0,0.0],[70.0," : "[0.0,";
+    return read_scene(
+        shipped("../hard/h69_r_100_m"),
+        {"line.curvature_table=[" + from + number(1. / radius) + "]]",
+         "line.cant_table=[" + from + number(cant) + "]]",
+         "vehicle[0].file=\"../vehicles/" + std::string(vehicle) + ".toml\"",
+         "vehicle[0].speed_m_per_s=" + number(speed), "step.dt_s=" + std::string(dt),
+         "step.frame_s=0.01", "step.duration_s=" + number(std::round(150. / speed) + 10.)});
+  }
+};
+
+}  // namespace
+
+TEST_CASE("vehicles with profiles come to rest on the flanges that lead them", "[curving]") {
+  for (const Led& led :
+       {Led{"manchester_1", "1e-3", 100., .06, 8.}, Led{"gz18", "1e-3", 300., .12, 16.},
+        Led{"gz18", "0.25e-3", 300., .12, 16.}}) {
+    INFO(led.vehicle << ", " << led.radius << " m, step of " << led.dt << " s");
+    const Traced run(led.scene(true));
+    for (const WheelLoad& wheel : running_loads(led.scene(false)).wheels) {
+      INFO(wheel.name);
+      for (const auto& [column, value] :
+           {std::pair{wheel.name + ".q_n", wheel.q}, std::pair{wheel.name + ".y_n", wheel.y}}) {
+        const std::vector<double> force = run[column];
+        CHECK(force.back() == Approx(value).margin(1e-3 * 7e4));
+        const auto [least, most] = std::minmax_element(force.end() - 100, force.end());
+        CHECK(*most - *least < 1e-3 * 7e4);
+      }
+    }
   }
 }
