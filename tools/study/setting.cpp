@@ -100,14 +100,17 @@ bool has_hertz(const Scene& scene) {
                      [](const VehicleScene& v) { return v.contact == WheelContactKind::hertz; });
 }
 
-/// What is varied, unless models, meshes, schemes and steps are what chooses it.
+/// The grid of the keys that are varied. Throws InputError for a key that the other lists choose,
+/// and for a table that holds one.
 Grid changes_of(const std::vector<std::string>& varied) {
   for (const std::string& option : varied) {
     const std::string key = read_varied(option).key;
     for (const char* const own :
-         {"condense", "track.unknowns", "track.elements_per_bay", "step.contact", "step.scheme",
-          "step.rho_inf", "step.hht_alpha", "step.dt_s", "step.frame_s"})
-      if (key.starts_with(own))
+         {"condense.kind", "condense.modes_per_bay", "condense.nodes_per_bay",
+          "condense.residual_flexibility", "track.unknowns", "track.elements_per_bay",
+          "step.contact", "step.scheme", "step.rho_inf", "step.hht_alpha", "step.dt_s",
+          "step.frame_s"})
+      if (key == own || std::string(own).starts_with(key + "."))
         throw InputError("E-STUDY-16",
                          fmt::format("--vary {}: the study chooses this by itself; expected "
                                      "--models, --meshes, --schemes or --steps",

@@ -63,8 +63,8 @@ TEST_CASE("what is varied is a setting's own, and no choice that has a list", "[
         std::vector<std::string>{"track.bays=16", "support.damping_z_n_s_per_m=5e4"});
   CHECK(overrides_of(all[1]).back() == "support.damping_z_n_s_per_m=5e4");
   CHECK(words_of(all[0]) != words_of(all[1]));
-  for (const char* own :
-       {"step.dt_s=1e-4,2e-4", "condense.modes_per_bay=1,2", "track.elements_per_bay=2"}) {
+  for (const char* own : {"step.dt_s=1e-4,2e-4", "condense.modes_per_bay=1,2",
+                          "track.elements_per_bay=2", "step={}", "condense={kind=\"modal\"}"}) {
     choices.varied = {own};
     CHECK_THROWS_WITH(settings_of(choices), Contains("E-STUDY-16") && Contains(own));
   }
