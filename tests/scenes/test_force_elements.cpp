@@ -7,6 +7,7 @@
 
 #include "answer/scene_running.h"
 #include "offline/energy/energy_account.h"
+#include "online/math/dense.h"
 #include "online/step/step.h"
 #include "run/simulation.h"
 #include "support/bad_input.h"
@@ -133,12 +134,8 @@ TEST_CASE("friction remembers the displacement at which the step's force acts",
     const RunnerModel& r = run.model().runner[0];
     const ForceElement& e = r.force_element[0];
     REQUIRE(r.force_elements == 1);
-    const auto displacement = [&] {
-      double z = 0.;
-      for (std::int32_t i = 0; i < r.size; ++i)
-        z += r.element_row[std::ptrdiff_t{r.size} * e.coordinate + i] * run.state.u[r.first + i];
-      return z;
-    };
+    const double* const row = r.element_row + std::ptrdiff_t{r.size} * e.coordinate;
+    const auto displacement = [&] { return dot(row, run.state.u + r.first, r.size); };
     const double* const memory = run.state.element_memory + e.memory;
     double largest = 0., gap = 0., before = displacement();
     Outputs out{};
