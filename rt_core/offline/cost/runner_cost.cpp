@@ -29,6 +29,7 @@ Cost creep_cost(const RollingCreep& creep) {
 struct WheelsCost {
   Cost find = {}, force = {}, slopes = {}, creep = {};
   std::int64_t wheels = 0, ranks = 0, most = kWheelsetRank;
+  std::int64_t solves = 1;  // two where contacts are followed
 };
 
 /// @param size  coordinates of a wheelset's law
@@ -38,7 +39,10 @@ void add_wheels(const RunnerModel& runner, std::int64_t size, WheelsCost& sum) {
   sum.wheels += wheels;
   sum.ranks += ranks * runner.wheelsets;
   if (ranks > sum.most) sum.most = ranks;
-  if (drawn) sum.find = sum.find + wheels * kFind;
+  if (drawn) {
+    sum.find = sum.find + wheels * kFind;
+    sum.solves = 2;
+  }
   sum.force = sum.force + wheels * (drawn ? kPatches : kWheel);
   sum.slopes = sum.slopes + wheels * (drawn ? kPatchesSlopes : kWheelSlopes);
   sum.creep = sum.creep + wheels * (drawn ? kMostZones : 1) * creep_cost(runner.contact.creep);
@@ -60,9 +64,10 @@ Cost newton_cost(const WheelsCost& of, std::int64_t scalars, std::int64_t n) {
       work(2 * kMostLaw * ranks + solves * (2 * ranks * ranks + 6 * ranks) + 2 * n * ranks + 8 * n,
            2 * kMostLaw * ranks + solves * (2 * ranks * ranks + 6 * ranks) + 2 * n * ranks);
   const Cost scalar = branching(40, 20);
-  return (trials + 1) * kNewtonSweeps * (scalars * scalar + creep) + creep +
-         kNewtonSweeps * (trials * (of.force + missed) + of.slopes + missed + factor + step) +
-         of.find + of.force + work(6 * n, 3 * n * n);
+  const Cost solve =
+      (trials + 1) * kNewtonSweeps * (scalars * scalar + creep) +
+      kNewtonSweeps * (trials * (of.force + missed) + of.slopes + missed + factor + step) + of.find;
+  return of.solves * solve + of.solves * of.force + creep + work(6 * n, 3 * n * n);
 }
 
 /// Cost of the laws of force elements, and of their limits, rates and memories.

@@ -247,8 +247,6 @@ NewtonResult solve_coupled_runners(const Model& model, const Workspace& w, Coupl
     z[i] = all.z_free[i];
     if (c.force[port] > 0. || law.bilateral) z[i] = port_depth(law, c.force[port]);
   }
-  for (int i = 0; i < sets; ++i)
-    block[all.scalars + i] = {all.scalars + kOfWheelset * i, kOfWheelset, all.law[i].rank()};
   for (int i = 0; i < model.runner_force_elements; ++i)
     block[all.scalars + sets + i] = element_block(
         element_of(model, i), first_of_elements(model, all.scalars) +
@@ -262,25 +260,28 @@ NewtonResult solve_coupled_runners(const Model& model, const Workspace& w, Coupl
     for (std::int32_t i = 0; i < runner.element_coordinates; ++i)
       own[i] += runner.element_compliance[i];
   }
-  const NewtonResult met = solve_laws(
-      {n, all.scalars + sets + model.runner_force_elements, w.newton, block, all.z_free,
-       w.newton + std::ptrdiff_t{n} * n, kRunnerTolerance,
-       model.runner_force_elements > 0 ? diagonal : nullptr},
-      [&](int b, const double* at, double* force, const LawSlopes* slopes, double* steep) noexcept {
-        const int element = b - all.scalars - sets;
-        if (element >= 0) {
-          const RunnerModel& runner = runner_of_element(model, element);
-          return evaluate_element(runner, element - runner.first_force_element, w, at, force,
-                                  slopes);
-        }
-        if (b >= all.scalars) return all.law[b - all.scalars].evaluate(at, force, slopes, steep);
-        const PortForce own = port_force(c.law[b], *at);
-        *force = -own.force;
-        if (slopes == nullptr) return;
-        *slopes->spread = 1.;
-        *slopes->slope = -own.slope;
-      },
-      all.force, z);
+  const auto law = [&](int b, const double* at, double* force, const LawSlopes* slopes,
+                       double* steep) noexcept {
+    const int element = b - all.scalars - sets;
+    if (element >= 0) {
+      const RunnerModel& runner = runner_of_element(model, element);
+      return evaluate_element(runner, element - runner.first_force_element, w, at, force, slopes);
+    }
+    if (b >= all.scalars) return all.law[b - all.scalars].evaluate(at, force, slopes, steep);
+    const PortForce own = port_force(c.law[b], *at);
+    *force = -own.force;
+    if (slopes == nullptr) return;
+    *slopes->spread = 1.;
+    *slopes->slope = -own.slope;
+  };
+  const NewtonResult met = solve_and_follow(all.law, sets, z + all.scalars, [&]() noexcept {
+    for (int i = 0; i < sets; ++i)
+      block[all.scalars + i] = {all.scalars + kOfWheelset * i, kOfWheelset, all.law[i].rank()};
+    return solve_laws({n, all.scalars + sets + model.runner_force_elements, w.newton, block,
+                       all.z_free, w.newton + std::ptrdiff_t{n} * n, kRunnerTolerance,
+                       model.runner_force_elements > 0 ? diagonal : nullptr},
+                      law, all.force, z);
+  });
   // The last point that was tried need not be the best one.
   double steep[kMostLaw];
   for (int i = 0; i < sets && met.status != NewtonStatus::converged; ++i) {

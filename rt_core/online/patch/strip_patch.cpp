@@ -120,4 +120,21 @@ Collocation collocation_of(const StripPatch& patch, double approach) noexcept {
   return {(patch.deepest + mean) - apart, (patch.deepest + mean) + apart, gaps / sum};
 }
 
+double shift_by_tilt(const StripPatch& patch, double approach) noexcept {
+  const double level = kVirtualPart * approach;
+  double overlap = 0., moment = 0., wet = 0., first = 0., second = 0.;
+  for (int i = 0; i < patch.strips; ++i) {
+    const double deep = level - patch.gap[i], number = i - patch.deepest;
+    const double own = deep > 0. ? deep : 0., is_wet = deep > 0. ? 1. : 0.;
+    overlap += own;
+    moment += own * number;
+    wet += is_wet;
+    first += is_wet * number;
+    second += is_wet * (number * number);
+  }
+  if (!(overlap > 0.)) return 0.;
+  const double mean = moment / overlap;
+  return patch.width * patch.width * ((second - 2. * mean * first) + mean * mean * wet) / overlap;
+}
+
 }  // namespace railstep

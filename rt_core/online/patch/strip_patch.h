@@ -61,6 +61,11 @@ PatchForce patch_force(const StripPatch& patch, double approach) noexcept;
 /// Finds Collocation of a patch; StripPatch::collocation is not read.
 Collocation collocation_of(const StripPatch& patch, double approach) noexcept;
 
+/// Shift of the centre of pressure across by a tilt of one body about x, m: the inverse of the
+/// difference of their curvatures, where these do not change over the patch. 0 where nothing
+/// overlaps.
+double shift_by_tilt(const StripPatch& patch, double approach) noexcept;
+
 /// How far two neighbouring minima of the gap are separate patches. It is 0 where the ridge between
 /// them is well within the deeper one's overlap, or not above the higher minimum; away from that it
 /// rises to 1.

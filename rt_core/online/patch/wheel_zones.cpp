@@ -345,12 +345,17 @@ int find_zones(const ProfilePair& pair, const WheelsetPlace& at, double least_de
   return zones;
 }
 
-PressedPoint pressed_point(const ProfilePair& pair, const WheelsetPlace& at, double s) noexcept {
+PressedPoint pressed_point(const ProfilePair& pair, const WheelsetPlace& at, double s,
+                           double half) noexcept {
   const Lowest wheel = lowest(pair, at);
   const TableValue own = value_at(pair.wheel, s);
   const FramePoint point = wheel.point(s, own.value, own.slope);
   const double of_rail = value_at(pair.rail, point.y).slope;
-  return {point.x, point.y, point.z, .5 * (wheel.slope_in_frame(own.slope) + of_rail)};
+  const double steeper =
+      value_at(pair.wheel, s + half).slope - value_at(pair.wheel, s - half).slope;
+  const double cosine = 1. / square_root(1. + own.slope * own.slope);
+  return {point.x, point.y, point.z, .5 * (wheel.slope_in_frame(own.slope) + of_rail),
+          -steeper / (2. * half) * (cosine * cosine * cosine)};
 }
 
 }  // namespace railstep

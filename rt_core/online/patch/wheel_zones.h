@@ -75,8 +75,11 @@ int find_zones(const ProfilePair& pair, const WheelsetPlace& at, double least_de
 struct PressedPoint {
   double ahead, y, z;  // m, as WheelZone's
   double slope;        // mean of the wheel's and of the rail's there, dz/dy
+  double curvature;    // of the wheel across, 1/m: positive where it bends up
 };
 /// The wheel's point at s, as far ahead of the axle as a point that touches.
-PressedPoint pressed_point(const ProfilePair& pair, const WheelsetPlace& at, double s) noexcept;
+/// @param half  to both sides of s, m, above 0: over which the curvature is a mean
+PressedPoint pressed_point(const ProfilePair& pair, const WheelsetPlace& at, double s,
+                           double half) noexcept;
 
 }  // namespace railstep

@@ -55,6 +55,11 @@ void fill_patch_rows(const ProfileContact& c, const Middle& middle, double side,
   patch.across_turned = arm.z / normal.z;
 }
 
+PatchTurn turn_of(double curvature, double shift) noexcept {
+  const double of_rail = curvature * shift - 1.;  // r / k
+  return {-curvature * of_rail, of_rail, -curvature * shift};
+}
+
 /// Whether the scene gives coefficients of creep, which hold for a wheel.
 bool has_coefficients(const RollingContact& c) noexcept { return c.creep.patch.exponent == 0.; }
 
@@ -120,32 +125,82 @@ void find_profile_wheel(const RollingContact& c, double radius, double side, con
                                                : part > 0. ? own.normal * part
                                                            : 0.);
     fill_creep_patch(c, own, depth, patch);
-    fill_patch_rows(c.profiles, middle, side, axle,
-                    pressed_point(pair, place, zone[i].s + zone[i].cosine_of_wheel * own.centre),
-                    patch);
+    const double per = zone[i].cosine_of_wheel;
+    const PressedPoint point =
+        pressed_point(pair, place, zone[i].s + per * own.centre, per * own.half_width);
+    patch.turn = turn_of(point.curvature, shift_by_tilt(patch_of(patch.zone), depth));
+    fill_patch_rows(c.profiles, middle, side, axle, point, patch);
   }
   if (has_coefficients(c)) share_coefficients(c, normal, wheel);
 }
 
 namespace {
 
-double depth_at(const ProfileWheel& wheel, const WheelRows<double>& r,
-                const OverRail& at) noexcept {
-  const double row[4] = {r.n_y, r.n_z, r.normal_roll, r.normal_yaw};
-  double depth = r.depth + r.normal_section * (at.section - wheel.section);
-  for (int m = 0; m < 4; ++m) depth -= row[m] * (at.motion[index_of(kPlaced[m])] - wheel.placed[m]);
-  return depth;
+/// How much the plane of contact turns at a place near that at which a wheel was found, rad, and
+/// the derivatives over kPlaced and over the section's roll.
+struct Turned {
+  double angle, by_motion[4], by_section;
+};
+
+/// Moves depth and rows of a patch to a place near that at which the wheel was found.
+Turned move_rows(const ProfileWheel& wheel, const PatchTurn& turn, const OverRail& at,
+                 WheelRows<double>& r) noexcept {
+  const WheelRows<double> found = r;
+  const double across[4] = {r.n_z, -r.n_y, r.across_roll, r.across_yaw};
+  const double normal[4] = {r.n_y, r.n_z, r.normal_roll, r.normal_yaw};
+  const double section = at.section - wheel.section;
+  const double roll = at.motion[index_of(BodyMotion::roll)] - wheel.placed[2];
+  double shift = r.across_section * section;
+  r.depth += r.normal_section * section;
+  Turned turned;
+  for (int m = 0; m < 4; ++m) {
+    const double moved = at.motion[index_of(kPlaced[m])] - wheel.placed[m];
+    r.depth -= normal[m] * moved;
+    shift += across[m] * moved;
+    turned.by_motion[m] = turn.by_shift * across[m];
+  }
+  turned.by_motion[2] += turn.by_roll;
+  turned.by_section = turn.by_shift * r.across_section + turn.by_section;
+  const double by_rolls = turn.by_roll * roll + turn.by_section * section;
+  const double angle = turned.angle = turn.by_shift * shift + by_rolls;
+  r.depth -= .5 * shift * (angle + by_rolls);
+  r.n_y += angle * found.n_z;
+  r.n_z -= angle * found.n_y;
+  r.normal_roll += angle * found.across_roll;
+  r.normal_yaw += angle * found.across_yaw;
+  r.normal_section -= angle * found.across_section;
+  r.across_roll -= angle * found.normal_roll;
+  r.across_yaw -= angle * found.normal_yaw;
+  r.across_section += angle * found.normal_section;
+  return turned;
 }
 
-void find_slopes(const WheelRows<double>& r, double across_turned, double stiffness, double spin,
-                 const ContactCreep& creep, ContactSlopes& slopes) noexcept {
+/// Rate at which a wheel leaves its rail at a contact, m/s.
+double leaving(const WheelRows<double>& r, const double* v, const RailRate& rail) noexcept {
+  return (r.n_y * (v[1] - rail.y) + r.n_z * (v[2] - rail.z)) +
+         ((r.normal_roll * v[3] + r.normal_yaw * v[5]) - r.normal_section * rail.roll);
+}
+
+/// @param by_yaw    slip across by the yaw, m/s
+/// @param by_angle  the same by the plane's turn
+void find_slopes(const WheelRows<double>& r, const Turned& turned, const PatchForce& force,
+                 double by_yaw, double by_angle, const ContactCreep& creep,
+                 ContactSlopes& slopes) noexcept {
   fill_rates_and_spread(r, creep, slopes);
   const double deeper[4] = {-r.n_y, -r.n_z, -r.normal_roll, -r.normal_yaw};
   for (int k = 0; k < 3; ++k) {
-    const double by_depth = stiffness * (k == 0 ? 1. : creep.by_normal[k - 1]);
+    const double by_depth = force.stiffness * (k == 0 ? 1. : creep.by_normal[k - 1]);
     for (int m = 0; m < 4; ++m) slopes.by_motion[k][m] = by_depth * deeper[m];
     slopes.by_section[k] = by_depth * r.normal_section;
-    if (k > 0) slopes.by_motion[k][3] += creep.by_slip[k - 1][1] * (across_turned * spin);
+    const double by_slip = k == 0 ? 0. : creep.by_slip[k - 1][1];
+    slopes.by_motion[k][3] += by_slip * by_yaw;
+    // Forces turn with the plane.
+    const double turning = (k == 0   ? -creep.force[1]
+                            : k == 2 ? force.normal
+                                     : 0.) +
+                           by_slip * by_angle;
+    for (int m = 0; m < 4; ++m) slopes.by_motion[k][m] += turning * turned.by_motion[m];
+    slopes.by_section[k] += turning * turned.by_section;
   }
 }
 
@@ -170,6 +225,16 @@ void add(double share, const WheelForce& own, WheelForce& sum) noexcept {
 
 }  // namespace
 
+double turned_by(const ProfileWheel& wheel, const OverRail& at) noexcept {
+  double most = 0.;
+  for (int i = 0; i < wheel.patches; ++i) {
+    WheelRows<double> rows = wheel.patch[i].rows;
+    const double angle = std::fabs(move_rows(wheel, wheel.patch[i].turn, at, rows).angle);
+    if (rows.depth > 0. && angle > most) most = angle;
+  }
+  return most;
+}
+
 WheelForce profile_force(const RollingContact& c, const ProfileWheel& wheel, double radius,
                          double side, const Rolling& rolling, const OverRail& at, const double* v,
                          const RailRate& rail, double* stiffness, ContactSlopes* slopes) noexcept {
@@ -180,7 +245,7 @@ WheelForce profile_force(const RollingContact& c, const ProfileWheel& wheel, dou
   for (int i = 0; i < wheel.patches; ++i) {
     const ProfilePatch& patch = wheel.patch[i];
     WheelRows<double> rows = patch.rows;
-    rows.depth = depth_at(wheel, rows, at);
+    const Turned turned = move_rows(wheel, patch.turn, at, rows);
     stiffness[i] = 0.;
     if (slopes != nullptr) slopes[i] = {};
     if (!(rows.depth > 0.)) {
@@ -199,7 +264,8 @@ WheelForce profile_force(const RollingContact& c, const ProfileWheel& wheel, dou
         creep_on_rail(c.creep, grown, side, {beyond, force.normal}, slip, rolling);
     stiffness[i] = share * force.stiffness;
     if (slopes != nullptr) {
-      find_slopes(rows, patch.across_turned, force.stiffness, spin, creep, slopes[i]);
+      find_slopes(rows, turned, force, patch.across_turned * spin, -leaving(rows, v, rail), creep,
+                  slopes[i]);
       take_share(share, slopes[i]);
     }
     add(share, wheel_force(rows, force.normal, slip, rolling, creep), sum);

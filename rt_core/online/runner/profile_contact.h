@@ -5,7 +5,8 @@
 namespace railstep {
 
 // Wheels on rails by their profiles. Where a wheel touches is found for one place of the wheelset,
-// and holds for places near it: rows, strips and the shapes of patches do not change.
+// and holds for places near it: strips and the shapes of patches do not change, and depths follow
+// the place to second order.
 
 /// Where a wheelset is over one of its rails.
 struct OverRail {
@@ -13,8 +14,20 @@ struct OverRail {
   double section;        // roll of the rail's section, rad
 };
 
+/// How the plane of contact turns about x as the bodies move, to first order: a throat on a gauge
+/// corner turns by 0.1 rad within 0.1 mm. With curvatures across w of the wheel and r of the rail,
+/// k = w - r, a shift t of the wheel across and rolls a of the wheel and s of the rail about the
+/// contact, its point goes (w t - a + s) / k over the rail, and the gap there grows by
+///   -w r / (2 k) t^2 + t (r a - w s) / k,
+/// less (a - s)^2 / (2 k), which is left out as the point's going is in the arms of forces: within
+/// a step both are small. The mean of 1 / k over the patch is shift_by_tilt().
+struct PatchTurn {
+  double by_shift, by_roll, by_section;  // -w r / k, rad/m; r / k; -w / k
+};
+
 struct ProfilePatch {
   WheelRows<double> rows;
+  PatchTurn turn;
   double across_turned;  // slip across by a unit of yaw, over the wheel's spin, m
   RollingPatch creep;
   WheelZone zone;
@@ -39,6 +52,10 @@ ProfileWheel* profile_wheels(const Workspace& w, std::int32_t wheelset) noexcept
 /// @param side  1 of the left wheel, -1 of the right
 void find_profile_wheel(const RollingContact& c, double radius, double side, const OverRail& at,
                         ProfileWheel& wheel) noexcept;
+
+/// Largest turn of the planes of those patches that touch, from the place at which the wheel was
+/// found to another one, rad.
+double turned_by(const ProfileWheel& wheel, const OverRail& at) noexcept;
 
 /// Sum of the forces of a wheel's patches at a place near that at which it was found.
 /// @param stiffness  [patches] out: of the normal forces, N/m

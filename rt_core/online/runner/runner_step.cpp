@@ -173,7 +173,6 @@ RunnerResult solve_runner(const RunnerStage& at, State& s, Workspace& w) noexcep
     }
     law[i].find_contacts(z + kMotions * i);
     law[i].find_fold(r.compliance, interface_size(r), kMotions * i);
-    block[i] = {kMotions * i, kMotions, law[i].rank()};
   }
   const std::int32_t motions = kMotions * r.wheelsets;
   find_elements(at, s, w, u, z_free + motions, z + motions);
@@ -181,15 +180,18 @@ RunnerResult solve_runner(const RunnerStage& at, State& s, Workspace& w) noexcep
     block[r.wheelsets + j] = element_block(r.force_element[j], motions);
   double diagonal[kMostInterfaces];
   find_diagonal(r, diagonal);
-  const NewtonResult met = solve_laws(
-      {interface_size(r), r.wheelsets + r.force_elements, r.compliance, block, z_free, w.newton,
-       kRunnerTolerance, r.force_elements > 0 ? diagonal : nullptr},
-      [&](int b, const double* at_z, double* f, const LawSlopes* slopes, double* steep) noexcept {
-        const int element = b - r.wheelsets;
-        if (element < 0) return law[b].evaluate(at_z, f, slopes, steep);
-        evaluate_element(r, element, w, at_z, f, slopes);
-      },
-      force, z);
+  const NewtonResult met = solve_and_follow(law, r.wheelsets, z, [&]() noexcept {
+    for (int i = 0; i < r.wheelsets; ++i) block[i] = {kMotions * i, kMotions, law[i].rank()};
+    return solve_laws(
+        {interface_size(r), r.wheelsets + r.force_elements, r.compliance, block, z_free, w.newton,
+         kRunnerTolerance, r.force_elements > 0 ? diagonal : nullptr},
+        [&](int b, const double* at_z, double* f, const LawSlopes* slopes, double* steep) noexcept {
+          const int element = b - r.wheelsets;
+          if (element < 0) return law[b].evaluate(at_z, f, slopes, steep);
+          evaluate_element(r, element, w, at_z, f, slopes);
+        },
+        force, z);
+  });
   // The last point that was tried need not be the best one.
   double steep[kMostLaw];
   for (int i = 0; i < r.wheelsets && met.status != NewtonStatus::converged; ++i)

@@ -98,16 +98,33 @@ void WheelsetLaw::place(const double* z, Placed& at) const noexcept {
   }
 }
 
-void WheelsetLaw::find_contacts(const double* z) noexcept {
-  if (profile == nullptr) return;
+template <typename Wanted>
+bool WheelsetLaw::find_contacts_where(const double* z, const Wanted& wanted) noexcept {
+  if (profile == nullptr) return false;
   Placed at;
   place(z, at);
+  bool any = false;
   for (int side = 0; side < 2; ++side) {
     double over[kMotions];
     place_over_rail(at.under, side, at.u, over);
-    find_profile_wheel(runner->contact, runner->wheelset[wheelset].radius, sign_of(side),
-                       {over, at.under.roll[side]}, profile[side]);
+    const OverRail now{over, at.under.roll[side]};
+    if (!wanted(profile[side], now)) continue;
+    any = true;
+    find_profile_wheel(runner->contact, runner->wheelset[wheelset].radius, sign_of(side), now,
+                       profile[side]);
   }
+  return any;
+}
+
+void WheelsetLaw::find_contacts(const double* z) noexcept {
+  find_contacts_where(z, [](const ProfileWheel&, const OverRail&) noexcept { return true; });
+}
+
+bool WheelsetLaw::follow_contacts(const double* z) noexcept {
+  constexpr double kFar = .005;  // rad
+  return find_contacts_where(z, [](const ProfileWheel& wheel, const OverRail& now) noexcept {
+    return turned_by(wheel, now) > kFar;
+  });
 }
 
 WheelForce WheelsetLaw::on_cone(const Placed& at, int side, const LawSlopes* slopes,

@@ -65,6 +65,9 @@ struct WheelsetLaw {
   /// Finds where profiles touch. All evaluations then keep this.
   /// @param z  [size] motions to which the step leads, as predicted before it
   void find_contacts(const double* z) noexcept;
+  /// Finds the contacts of those wheels again whose planes of contact have turned by more than
+  /// 0.005 rad since they were found. @param z  [size] motions @returns whether there is one
+  bool follow_contacts(const double* z) noexcept;
   /// Takes `fold` from the compliance of each coordinate, or the largest of them if one is held.
   /// @param Y  [n][n] NewtonProblem::Y @param first  of the law's coordinates in it
   void find_fold(const double* Y, int n, int first) noexcept;
@@ -81,6 +84,8 @@ struct WheelsetLaw {
     RailRate moving[2];
   };
   void place(const double* z, Placed& at) const noexcept;
+  template <typename Wanted>
+  bool find_contacts_where(const double* z, const Wanted& wanted) noexcept;
   int contacts(int side) const noexcept;
   bool is_folded() const noexcept;
   WheelForce on_cone(const Placed& at, int side, const LawSlopes* slopes,
@@ -91,6 +96,25 @@ struct WheelsetLaw {
 
 /// The law of a wheelset without its rates at zero. @param s  at the stage's start
 WheelsetLaw law_of(const RunnerStage& at, int wheelset, bool seated, const State& s) noexcept;
+
+/// Solves with the laws of wheelsets, and once more where the solution moved contacts far from
+/// where they were found. Where a throat rides on a gauge corner on a rail that gives way, the
+/// forces of the last step mislead: each step would overshoot the one before.
+/// @param law    [sets]
+/// @param z      motions, one wheelset after the other; `solve` starts there and leaves the
+/// solution
+/// @param solve  solve(): NewtonResult
+template <typename Solve>
+NewtonResult solve_and_follow(WheelsetLaw* law, int sets, const double* z,
+                              const Solve& solve) noexcept {
+  const NewtonResult first = solve();
+  bool again = false;
+  for (int i = 0; i < sets; ++i, z += law->size(), ++law) again = law->follow_contacts(z) || again;
+  if (!again) return first;
+  NewtonResult last = solve();
+  if (first.iterations > last.iterations) last.iterations = first.iterations;
+  return last;
+}
 
 /// Events of the last evaluation: contact_lost, full_slip, beyond_profile.
 Status events_of(const WheelsetLaw& law) noexcept;

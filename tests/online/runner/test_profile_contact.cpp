@@ -195,6 +195,59 @@ TEST_CASE("depths follow the rows of a wheel's patch", "[profile_contact]") {
   CHECK(worst < .15);
 }
 
+TEST_CASE("planes of contact turn as the bodies move", "[profile_contact]") {
+  // A wheel under 60 kN from its tread to the throat on the gauge corner, without creep.
+  Pair pair(CreepLaw::linear);
+  pair.contact.creep.patch = {1., 1., 1., 0., {}};
+  const auto slope_of = [](const WheelForce& f) {
+    return std::atan2(f.generalised[1], f.generalised[2]);
+  };
+  const auto press = [&](Riding& d, const auto& force) {
+    double low = d.u[z] - 2e-3, high = d.u[z] + 2e-3;
+    for (int i = 0; i < 45; ++i) {
+      d.u[z] = .5 * (low + high);
+      (force(d).normal > 60e3 ? low : high) = d.u[z];
+    }
+    return slope_of(force(d));
+  };
+  const auto by_profiles = [&](const Riding& d) { return found(pair.contact, -1., d).force; };
+  // Motions, and what they shift the wheel across and tilt it by.
+  constexpr int moved[3] = {y, roll, -1};
+  constexpr double lever[3] = {1., .46, .03};
+  int on_throat = 0;
+  for (double shift = 0.; shift < 6.55e-3; shift += 5e-5) {
+    Riding d{};
+    d.u[y] = -shift;
+    d.u[yaw] = -4e-3;
+    press(d, by_profiles);
+    const ProfileWheel wheel = found(pair.contact, -1., d).wheel;
+    if (wheel.patches != 1) continue;
+    const bool throat = shift > 5.5e-3;
+    on_throat += throat ? 1 : 0;
+    const auto by_law = [&](const Riding& at) {
+      double stiffness[kMostZones];
+      return profile_force(pair.contact, wheel, kWheel, -1., kRolling, {at.u, at.section}, at.v,
+                           at.rail, stiffness);
+    };
+    for (int m = 0; m < 3; ++m) {
+      Riding more = d, less = d;
+      const double step = 4e-6 / lever[m];
+      (moved[m] < 0 ? more.section : more.u[moved[m]]) += step;
+      (moved[m] < 0 ? less.section : less.u[moved[m]]) -= step;
+      Riding more_by_law = more, less_by_law = less;
+      const double truly = press(more, by_profiles) - press(less, by_profiles),
+                   turned = press(more_by_law, by_law) - press(less_by_law, by_law);
+      CAPTURE(shift, m, truly / 8e-6, turned / 8e-6);
+      if (found(pair.contact, -1., more).wheel.patches != 1 ||
+          found(pair.contact, -1., less).wheel.patches != 1)
+        continue;
+      // Patches on the tread reach over several radii of the rail.
+      CHECK(turned == Approx(truly).epsilon(throat ? .21 : .75));
+    }
+  }
+  CHECK(on_throat > 10);
+}
+
 TEST_CASE("slopes of a patch are those of its forces", "[profile_contact]") {
   for (const CreepLaw law : {CreepLaw::linear, CreepLaw::she, CreepLaw::polach}) {
     const Pair pair(law);
@@ -214,9 +267,9 @@ TEST_CASE("slopes of a patch are those of its forces", "[profile_contact]") {
       };
       static_cast<void>(force(d, slopes));
       const double n_y = wheel.patch[0].rows.n_y, n_z = wheel.patch[0].rows.n_z;
-      // The three scalars of a patch.
+      // The three scalars of a patch, in directions that do not turn.
       const auto scalar = [&](const WheelForce& w, int k) {
-        return k == 0   ? w.normal
+        return k == 0   ? n_y * w.generalised[1] + n_z * w.generalised[2]
                : k == 1 ? w.generalised[0]
                         : n_z * w.generalised[1] - n_y * w.generalised[2];
       };
