@@ -202,10 +202,12 @@ Status publish_runners(const Model& model, const State& at, Outputs& outputs) no
                                     ? poses_of(model, runner, along_in(runner, at), pose)
                                     : nullptr;
     publish_constraints(model, runner, at, poses, outputs);
-    for (std::int32_t j = 0; j < runner.force_elements; ++j)
+    for (std::int32_t j = 0; j < runner.force_elements; ++j) {
+      const StandingElement element = standing_element(model, runner, j, at, poses);
       outputs.element_force[runner.first_force_element + j] =
-          standing_element(model, runner, j, at, poses).force.force +
-          runner.force_element[j].preload;
+          element.force.force + runner.force_element[j].preload;
+      outputs.element_travel[runner.first_force_element + j] = element.z;
+    }
     if (has_large_turn(runner, at)) met = met | Status::large_turn;
   }
   return met;

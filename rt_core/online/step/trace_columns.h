@@ -45,7 +45,7 @@ inline constexpr OutputColumn<kMaxRunners> kFreeRunnerColumns[] = {
     {"x_m", &Outputs::runner_way}, {"speed_m_per_s", &Outputs::runner_speed}};
 inline constexpr OutputColumn<kMaxRunnerRods> kRodColumns[] = {{"force_n", &Outputs::rod_tension}};
 inline constexpr OutputColumn<kMaxRunnerForceElements> kElementColumns[] = {
-    {"force_n", &Outputs::element_force}};
+    {"force_n", &Outputs::element_force}, {"travel_m", &Outputs::element_travel}};
 inline constexpr OutputColumn<kMaxRunnerForceElements> kBrakeColumns[] = {
     {"moment_n_m", &Outputs::element_force}};
 
