@@ -173,6 +173,31 @@ HardResult an_hour(const std::filesystem::path& scene) {
   return result;
 }
 
+// H72 ------------------------------------------------------------------------------------------
+
+HardResult gauge_corner(const std::filesystem::path& scene) {
+  const HardRun run(scene), fine(scene, {"step.dt_s=1.25e-4"});
+  HardResult result;
+  result.checks = {holds("full slip is the one status bit", run.status() == "full_slip")};
+  for (const char* name : {"car.leading_1_right.q_n", "car.leading_1_right.y_n"}) {
+    const std::vector<double> own = run.column(name), other = fine.column(name);
+    double off = 0., size = 0.;
+    for (std::size_t i = 0; i < own.size(); ++i) {
+      off += (own[i] - other[i]) * (own[i] - other[i]);
+      size += other[i] * other[i];
+    }
+    result.checks.push_back(
+        {fmt::format("{} at an eighth of the step, rms", name), std::sqrt(off / size), .03});
+  }
+  check_energy(result, run, "", 1e-2, 1e-2);
+  result.picture = {"time, s",
+                    "Y of the leading outer wheel, kN",
+                    {run.curve("car.leading_1_right.y_n", "1 ms", 1e-3),
+                     fine.curve("car.leading_1_right.y_n", "0.125 ms", 1e-3)}};
+  result.frame_us = run.frame_us();
+  return result;
+}
+
 }  // namespace
 
 std::vector<HardCase> vehicle_cases() {
@@ -191,7 +216,10 @@ std::vector<HardCase> vehicle_cases() {
            "Half the step; sum of Q; energy.", narrow_curve},
           {"H70", "h70_an_hour", "A braked wagon stands for an hour on a lean and a slope",
            "Friction in leaves, links and contacts adds up what each step forgets.", "No drift.",
-           an_hour}};
+           an_hour},
+          {"H72", "h72_gauge_corner", "Throats on gauge corners of rails that give way",
+           "The plane of contact turns by more than the forces of the step before allow for.",
+           "An eighth of the step; energy.", gauge_corner}};
 }
 
 }  // namespace railstep

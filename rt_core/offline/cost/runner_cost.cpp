@@ -71,11 +71,12 @@ Cost newton_cost(const WheelsCost& of, std::int64_t scalars, std::int64_t n) {
 }
 
 /// Cost of the laws of force elements, and of their limits, rates and memories.
-Cost elements_cost(const RunnerModel& runner) {
+/// @param solves  of Newton's method in a stage
+Cost elements_cost(const RunnerModel& runner, std::int64_t solves) {
   Cost sum{};
   for (std::int32_t j = 0; j < runner.force_elements; ++j) {
     const ForceElement& e = runner.force_element[j];
-    constexpr std::int64_t evaluations = 4 * kNewtonSweeps + 2;
+    const std::int64_t evaluations = solves * 4 * kNewtonSweeps + 2;
     sum = sum + evaluations * table_cost(e.curve.points);
     if (e.law != ElementLaw::spring)
       sum = sum +
@@ -122,6 +123,9 @@ Cost design_line_cost(const Model& model, const RunnerModel& runner) {
 
 Cost runners_cost(const Model& model) {
   Cost sum{};
+  std::int64_t together = 1;  // solves of all runners on a track
+  for (std::int32_t i = 0; i < model.runners; ++i)
+    if (has_profiles(model.runner[i].contact)) together = 2;
   for (std::int32_t i = 0; i < model.runners; ++i) {
     const RunnerModel& own = model.runner[i];
     const std::int64_t n = own.size, meets = interface_size(own),
@@ -140,7 +144,8 @@ Cost runners_cost(const Model& model) {
                held * (2 * n + motions + 2 * n * own.element_coordinates)) +
           solved + 3 * table_cost(own.travel.rows) + forces_cost(own.force, own.forces) +
           own.wheelsets * (branching(40, 40) + model.signals * kSignal + grip) +
-          elements_cost(own) + design_line_cost(model, own);
+          elements_cost(own, model.lines > 0 ? together : wheels.solves) +
+          design_line_cost(model, own);
   }
   return sum;
 }
@@ -170,7 +175,7 @@ Cost publish_runners_cost(const Model& model) {
     const std::int64_t rows = own.rods + own.element_coordinates;
     sum = sum + rows * (work(2 * n, 2 * n) + branching(10, 5)) +
           own.wheelsets * table_cost(own.travel.rows) + own.wheelsets * branching(40, 40) +
-          elements_cost(own) +
+          elements_cost(own, 1) +
           (rows > 0 && is_there(model.design_line) ? poses_cost(model, own) : Cost{});
   }
   return sum;

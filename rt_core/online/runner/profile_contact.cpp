@@ -6,6 +6,7 @@ namespace {
 
 constexpr double kLeastDepth = kLeastPatchDepth;  // up to which strips of a patch reach at least
 constexpr double kFarOff = 2e-4;                  // m
+constexpr double kMostTurn = .2;                  // rad, of a plane of contact within a solve
 constexpr double kMostDepth = 3e-3;  // m: a wheel that is deeper is not on the rail but in it
 
 struct SectionVector {
@@ -162,8 +163,14 @@ Turned move_rows(const ProfileWheel& wheel, const PatchTurn& turn, const OverRai
   turned.by_motion[2] += turn.by_roll;
   turned.by_section = turn.by_shift * r.across_section + turn.by_section;
   const double by_rolls = turn.by_roll * roll + turn.by_section * section;
-  const double angle = turned.angle = turn.by_shift * shift + by_rolls;
-  r.depth -= .5 * shift * (angle + by_rolls);
+  double angle = turned.angle = turn.by_shift * shift + by_rolls;
+  const double part = std::fabs(angle) > kMostTurn ? kMostTurn / std::fabs(angle) : 1.;
+  r.depth -= .5 * shift * (angle + by_rolls) * (part * (2. - part));
+  angle *= part;
+  if (part < 1.) {
+    for (double& by : turned.by_motion) by = 0.;
+    turned.by_section = 0.;
+  }
   r.n_y += angle * found.n_z;
   r.n_z -= angle * found.n_y;
   r.normal_roll += angle * found.across_roll;

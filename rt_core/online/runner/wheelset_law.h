@@ -62,7 +62,7 @@ struct WheelsetLaw {
   /// Scalars of the law: normal force, creep along and across of each cone or patch. If there are
   /// more scalars than coordinates, the coordinates take their place. Known after find_contacts().
   int rank() const noexcept;
-  /// Finds where profiles touch. All evaluations then keep this.
+  /// Finds where profiles touch. All evaluations keep this until follow_contacts().
   /// @param z  [size] motions to which the step leads, as predicted before it
   void find_contacts(const double* z) noexcept;
   /// Finds the contacts of those wheels again whose planes of contact have turned by more than
@@ -71,8 +71,9 @@ struct WheelsetLaw {
   /// Takes `fold` from the compliance of each coordinate, or the largest of them if one is held.
   /// @param Y  [n][n] NewtonProblem::Y @param first  of the law's coordinates in it
   void find_fold(const double* Y, int n, int first) noexcept;
-  /// @param slopes  out: of the rank() scalars. The turn of the directions of forces and the creep
-  ///                moment are left out: they change the slopes too little in a step. Null: none
+  /// @param slopes  out: of the rank() scalars. How cones turn the directions of forces, and the
+  /// creep
+  ///                moment, are left out: they change the slopes too little in a step. Null: none
   /// @param steep   [rank] out: slopes of the normal forces, by cones the roots of depths; entries
   ///                of other scalars are left
   void evaluate(const double* z, double* force, const LawSlopes* slopes, double* steep) noexcept;
@@ -110,7 +111,7 @@ NewtonResult solve_and_follow(WheelsetLaw* law, int sets, const double* z,
   const NewtonResult first = solve();
   bool again = false;
   for (int i = 0; i < sets; ++i, z += law->size(), ++law) again = law->follow_contacts(z) || again;
-  if (!again) return first;
+  if (!again || first.status == NewtonStatus::bad_input) return first;
   NewtonResult last = solve();
   if (first.iterations > last.iterations) last.iterations = first.iterations;
   return last;

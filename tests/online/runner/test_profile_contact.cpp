@@ -248,6 +248,29 @@ TEST_CASE("planes of contact turn as the bodies move", "[profile_contact]") {
   CHECK(on_throat > 10);
 }
 
+TEST_CASE("a wheel that leaves its gauge corner has no force", "[profile_contact]") {
+  // Beyond the shift at which throat and corner are most alike.
+  const Pair pair(CreepLaw::she);
+  for (const double shift : {6.3e-3, 6.5e-3, 6.6e-3, 6.65e-3, 6.7e-3})
+    for (const double load : {20e3, 60e3}) {
+      Riding d{};
+      d.u[y] = -shift;
+      double low = -1e-3, high = 3e-3;
+      for (int i = 0; i < 45; ++i) {
+        d.u[z] = .5 * (low + high);
+        (found(pair.contact, -1., d).force.normal > load ? low : high) = d.u[z];
+      }
+      const ProfileWheel wheel = found(pair.contact, -1., d).wheel;
+      for (const double lift : {3e-4, 5e-4, 1e-3}) {
+        double u[6];
+        std::copy_n(d.u, 6, u);
+        u[z] += lift;
+        CAPTURE(shift, load, lift);
+        CHECK(depth_of(pair.contact, wheel, -1., u, 0.) < 0.);
+      }
+    }
+}
+
 TEST_CASE("slopes of a patch are those of its forces", "[profile_contact]") {
   for (const CreepLaw law : {CreepLaw::linear, CreepLaw::she, CreepLaw::polach}) {
     const Pair pair(law);
