@@ -72,8 +72,8 @@ struct WheelsetLaw {
   /// @param Y  [n][n] NewtonProblem::Y @param first  of the law's coordinates in it
   void find_fold(const double* Y, int n, int first) noexcept;
   /// @param slopes  out: of the rank() scalars. How cones turn the directions of forces, and the
-  /// creep
-  ///                moment, are left out: they change the slopes too little in a step. Null: none
+  ///                moments of creep, are left out: they change the slopes too little in a step.
+  ///                Null: none
   /// @param steep   [rank] out: slopes of the normal forces, by cones the roots of depths; entries
   ///                of other scalars are left
   void evaluate(const double* z, double* force, const LawSlopes* slopes, double* steep) noexcept;
@@ -102,8 +102,8 @@ WheelsetLaw law_of(const RunnerStage& at, int wheelset, bool seated, const State
 /// where they were found. Where a throat rides on a gauge corner on a rail that gives way, the
 /// forces of the last step mislead: each step would overshoot the one before.
 /// @param law    [sets]
-/// @param z      motions, one wheelset after the other; `solve` starts there and leaves the
-/// solution
+/// @param z      motions of one wheelset after the other: `solve` starts there, and leaves what it
+///               found
 /// @param solve  solve(): NewtonResult
 template <typename Solve>
 NewtonResult solve_and_follow(WheelsetLaw* law, int sets, const double* z,

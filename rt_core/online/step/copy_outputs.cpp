@@ -11,14 +11,9 @@ void copy(const T (&from)[most], T (&to)[most], std::int32_t count) noexcept {
   std::memcpy(to, from, sizeof(T) * static_cast<std::size_t>(count));
 }
 
-}  // namespace
-
-void copy_published(const Model& model, const Outputs& from, Outputs& to) noexcept {
-  const std::int32_t loads = model.loads, contacts = contact_count(model);
-  copy(from.load_x, to.load_x, loads);
-  copy(from.load_place, to.load_place, loads);
-  copy(from.load_deflection, to.load_deflection, loads);
-  copy(from.load_force, to.load_force, loads);
+/// Between Outputs and ContactOutputs, whose members have the same names.
+template <typename From, typename To>
+void copy_contacts(const From& from, To& to, std::int32_t contacts) noexcept {
   copy(from.contact_force, to.contact_force, contacts);
   copy(from.contact_force_mean, to.contact_force_mean, contacts);
   copy(from.contact_force_peak, to.contact_force_peak, contacts);
@@ -28,6 +23,24 @@ void copy_published(const Model& model, const Outputs& from, Outputs& to) noexce
   copy(from.contact_x, to.contact_x, contacts);
   copy(from.contact_place, to.contact_place, contacts);
   copy(from.contact_rail_z, to.contact_rail_z, contacts);
+}
+
+}  // namespace
+
+void keep_contacts(const Model& model, const Outputs& from, ContactOutputs& to) noexcept {
+  copy_contacts(from, to, contact_count(model));
+}
+void restore_contacts(const Model& model, const ContactOutputs& from, Outputs& to) noexcept {
+  copy_contacts(from, to, contact_count(model));
+}
+
+void copy_published(const Model& model, const Outputs& from, Outputs& to) noexcept {
+  const std::int32_t loads = model.loads, contacts = contact_count(model);
+  copy(from.load_x, to.load_x, loads);
+  copy(from.load_place, to.load_place, loads);
+  copy(from.load_deflection, to.load_deflection, loads);
+  copy(from.load_force, to.load_force, loads);
+  copy_contacts(from, to, contacts);
   const std::int32_t sets = model.runner_wheelsets;
   copy(from.wheel_q, to.wheel_q, 2 * sets);
   copy(from.wheel_y, to.wheel_y, 2 * sets);

@@ -7,4 +7,14 @@ namespace railstep {
 /// iterations, residuals) are left.
 void copy_published(const Model& model, const Outputs& from, Outputs& to) noexcept;
 
+/// What steps collect in Outputs of contacts, before a frame is published.
+struct ContactOutputs {
+  double contact_force[kMaxWheels], contact_force_mean[kMaxWheels], contact_force_peak[kMaxWheels],
+      contact_impulse[kMaxWheels], contact_gap[kMaxWheels];
+  bool contact_on_rail[kMaxWheels];
+  double contact_x[kMaxWheels], contact_place[kMaxWheels], contact_rail_z[kMaxWheels];
+};
+void keep_contacts(const Model& model, const Outputs& from, ContactOutputs& to) noexcept;
+void restore_contacts(const Model& model, const ContactOutputs& from, Outputs& to) noexcept;
+
 }  // namespace railstep

@@ -225,21 +225,33 @@ void forces(const Model& model, std::int64_t step, double* re, double* im, doubl
 
 namespace {
 
-// Never inlined: none of their arithmetic may move out of the mode that their callers set.
-[[gnu::noinline]] void make_frame(const Model& model, State& state, Workspace& workspace,
-                                  Outputs& outputs) noexcept {
-  Outputs last;
-  copy_published(model, outputs, last);
-  start_frame(model, state, outputs);
-  ExternalContact external[kMaxExternalWheels];
-  for (std::int32_t n = 0; n < model.steps_per_frame; ++n)
-    make_step(model, state, workspace, outputs, external);
+/// Publishes a frame that has been made; if its state is no longer finite, the last one stays. By
+/// itself, so that copies of all outputs take no stack under the steps.
+/// @param last  contacts before the frame's steps
+[[gnu::noinline]] void publish_frame(const Model& model, const State& state, Workspace& workspace,
+                                     const ExternalContact* external, const ContactOutputs& last,
+                                     Outputs& outputs) noexcept {
+  Outputs before;
+  copy_published(model, outputs, before);
+  restore_contacts(model, last, before);
   if (model.external_wheels > 0) {
     publish_external(model, state, external, outputs);
     publish_external_rates(model, state, external, workspace, outputs);
   }
   publish(model, state, outputs);
-  if (has(outputs.status, Status::nonfinite_state)) copy_published(model, last, outputs);
+  if (has(outputs.status, Status::nonfinite_state)) copy_published(model, before, outputs);
+}
+
+// Never inlined: none of their arithmetic may move out of the mode that their callers set.
+[[gnu::noinline]] void make_frame(const Model& model, State& state, Workspace& workspace,
+                                  Outputs& outputs) noexcept {
+  ContactOutputs last;
+  keep_contacts(model, outputs, last);
+  start_frame(model, state, outputs);
+  ExternalContact external[kMaxExternalWheels];
+  for (std::int32_t n = 0; n < model.steps_per_frame; ++n)
+    make_step(model, state, workspace, outputs, external);
+  publish_frame(model, state, workspace, external, last, outputs);
   state.latched = state.latched | (outputs.status & kLatched);
 }
 
