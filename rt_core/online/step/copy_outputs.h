@@ -7,7 +7,7 @@ namespace railstep {
 /// iterations, residuals) are left.
 void copy_published(const Model& model, const Outputs& from, Outputs& to) noexcept;
 
-/// What steps collect in Outputs of contacts, before a frame is published.
+/// Outputs of contacts that steps change before their frame is published.
 struct ContactOutputs {
   double contact_force[kMaxWheels], contact_force_mean[kMaxWheels], contact_force_peak[kMaxWheels],
       contact_impulse[kMaxWheels], contact_gap[kMaxWheels];

@@ -225,8 +225,9 @@ void forces(const Model& model, std::int64_t step, double* re, double* im, doubl
 
 namespace {
 
-/// Publishes a frame that has been made; if its state is no longer finite, the last one stays. By
-/// itself, so that copies of all outputs take no stack under the steps.
+/// Publishes a frame that has been made. If its state is no longer finite, the outputs of the last
+/// frame stay. This is not part of make_frame(), so that the copy of all outputs takes no stack
+/// under the steps.
 /// @param last  contacts before the frame's steps
 [[gnu::noinline]] void publish_frame(const Model& model, const State& state, Workspace& workspace,
                                      const ExternalContact* external, const ContactOutputs& last,
