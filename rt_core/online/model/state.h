@@ -187,7 +187,7 @@ struct Outputs {
   double rod_tension[kMaxRunnerRods];  // N, of the rigid rods of rail vehicles
   /// N or N m, of their force elements on the first body; of lines how they push their ends apart.
   double element_force[kMaxRunnerForceElements];
-  /// m or rad, of the first body over the second one; of lines how far their ends are apart.
+  /// m or rad, how far the first body has moved over the second one; of lines their ends apart.
   double element_travel[kMaxRunnerForceElements];
   /// The point of the rail under each external wheel at the frame's end.
   bool external_on_rail[kMaxExternalWheels];

@@ -19,9 +19,9 @@ struct OverRail {
 /// k = w - r, a shift t of the wheel across and rolls a of the wheel and s of the rail about the
 /// contact, its point goes (w t - a + s) / k over the rail, and the gap there grows by
 ///   -w r / (2 k) t^2 + t (r a - w s) / k,
-/// less (a - s)^2 / (2 k). That is left out, and so is the point's going in the arms of forces:
-/// both are small within a step, and slopes of the laws would have to have them, too. The mean of 1
-/// / k over the patch is shift_by_tilt(). A normal leans by at most 0.2 rad.
+/// less (a - s)^2 / (2 k). That term is left out, and so is the point's way in the arms of forces:
+/// both are small within a step, and Newton's slopes would need them, too. The mean of 1/k over the
+/// patch is shift_by_tilt(). A normal leans by at most 0.2 rad.
 struct PatchTurn {
   double by_shift, by_roll, by_section;  // -w r / k, rad/m; r / k; -w / k
 };
