@@ -2,18 +2,16 @@
 #include <Eigen/Dense>
 #include <array>
 #include <cmath>
-#include <complex>
 #include <vector>
+
+#include "support/exact_contact.h"
 
 namespace railstep::exact {
 
 // The Manchester passenger vehicle on rigid rails in a steady curve with nothing linearised but the
-// creep law: frames on the circle itself, finite rotations, cones on circular railheads. Written
-// apart from rt_core, with its own data. Derivatives are complex steps. Axes as in railstep.
+// law of creep: frames on the circle itself, finite rotations, wheels as in exact_contact.h.
+// Written apart from rt_core, with its own data.
 
-using Complex = std::complex<double>;
-template <typename T>
-using Vector3 = Eigen::Matrix<T, 3, 1>;
 template <typename T>
 using Matrix3 = Eigen::Matrix<T, 3, 3>;
 constexpr int kBodies = 7;  // the car, two bogies, four wheelsets
@@ -21,15 +19,6 @@ constexpr int kSize = 6 * kBodies;
 template <typename T>
 using Motions = Eigen::Matrix<T, kSize, 1>;
 
-// Eigen's products of complex vectors conjugate.
-template <typename T>
-T dot(const Vector3<T>& a, const Vector3<T>& b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-template <typename T>
-Vector3<T> cross(const Vector3<T>& a, const Vector3<T>& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
 template <typename T>
 Matrix3<T> skew(const Vector3<T>& v) {
   Matrix3<T> m;
@@ -65,7 +54,9 @@ struct Wheel {
 
 class Vehicle {
  public:
-  explicit Vehicle(const Curve& curve) : c_(curve) {
+  explicit Vehicle(const Curve& curve, const Flange& flange = {}) : c_(curve), flange_(flange) {
+    surfaces_.push_back(tread_surface(curve.slope));
+    if (flange.friction > 0.) surfaces_.push_back(flange_surface(flange));
     beta_ = -(curve.curvature < 0. ? -1. : 1.) * std::asin(curve.cant / (2. * kHalfDistance));
     const double bogie_load = (32000. + 2. * 2615.) / 8. * kGravity, car_load = 8000. * kGravity;
     for (int i = 0; i < 4; ++i)
@@ -117,7 +108,7 @@ class Vehicle {
   static Motions<double> at_rest() {
     Motions<double> x = Motions<double>::Zero();
     const double load = (32000. + 2. * 2615. + 4. * 1813.) * kGravity / 8.;
-    for (int i = 0; i < kBodies; ++i) x[6 * i + 2] = -std::pow(load / kHertz, 2. / 3.);
+    for (int i = 0; i < kBodies; ++i) x[6 * i + 2] = -std::pow(load / kTreadHertz, 2. / 3.);
     return x;
   }
   /// Left and right wheel of each wheelset.
@@ -136,9 +127,7 @@ class Vehicle {
   double drag(const Motions<double>& x) const { return -residual<double>(x)[0]; }
 
  private:
-  static constexpr double kGravity = 9.81, kRadius = .46, kHalfDistance = .75, kCrown = .3,
-                          kHertz = 94125079189.525375;
-  static constexpr std::array<double, 4> kCreep = {9.25e6, 8.52e6, 1.95e4, 53.8};
+  static constexpr double kGravity = 9.81;
   static constexpr double kPlace[kBodies] = {0., 9.5, -9.5, 10.78, 8.22, -8.22, -10.78};
   static constexpr std::array<double, kBodies> kHeight = {1.8, .6, .6, .46, .46, .46, .46};
   static constexpr std::array<double, kBodies> kMass = {32000., 2615., 2615., 1813.,
@@ -181,19 +170,6 @@ class Vehicle {
   }
 
   template <typename T>
-  static Vector3<T> ahead(const T& yaw) {
-    using std::cos;
-    using std::sin;
-    return {cos(yaw), sin(yaw), T(0)};
-  }
-  template <typename T>
-  static Vector3<T> axle(const T& roll, const T& yaw) {
-    using std::cos;
-    using std::sin;
-    return {-sin(yaw) * cos(roll), cos(yaw) * cos(roll), sin(roll)};
-  }
-
-  template <typename T>
   Pose<T> pose(int i, const Motions<T>& u, const Motions<T>& v) const {
     Pose<T> p;
     p.centre = u.template segment<3>(6 * i);
@@ -219,38 +195,32 @@ class Vehicle {
   template <typename T>
   Eigen::Matrix<T, 6, 1> contact(double side, const Eigen::Matrix<T, 6, 1>& u,
                                  const Eigen::Matrix<T, 6, 1>& v) const {
-    using std::sqrt;
-    const double g = c_.slope, cg = 1. / std::sqrt(1. + g * g), sg = g * cg;
     const Vector3<T> c{u[0], u[1], kRadius + u[2]}, x = ahead<T>(u[5]), e = axle<T>(u[3], u[5]);
-    const double rail_y = side * (kHalfDistance + kCrown * sg), rail_z = -kCrown * cg;
-    T place = u[0];
-    Vector3<T> r, across;
-    T along, far;
-    for (int i = 0; i < 9; ++i) {
-      r = Vector3<T>{place, T(rail_y), T(rail_z)} - c;
-      along = dot<T>(r, e);
-      across = r - along * e;
-      far = sqrt(dot<T>(across, across));
-      const T slope = across[0] / far + side * g * e[0];
-      if (i == 8) break;
-      place -= slope * far / (1. - e[0] * e[0] - (across[0] / far) * (across[0] / far));
-    }
-    const T depth = kCrown - (far - (kRadius - side * g * (along - side * kHalfDistance))) * cg;
-    const Vector3<T> n = -(cg / far * across + side * sg * e), arm = r + kCrown * n;
-    const T normal = std::real(depth) > 0. ? T(kHertz * depth * sqrt(depth)) : T(0);
     const double V = c_.speed;
     Vector3<T> turning = V * c_.curvature * up<T>() + v[3] * x + (V / kRadius + v[4]) * e;
     turning[2] += v[5];
     Vector3<T> speed = V * c_.curvature * u[0] * inwards<T>();
     speed[0] += V * (1. - c_.curvature * dot<T>(c, inwards<T>()));
     for (int d = 0; d < 3; ++d) speed[d] += v[d];
-    speed += cross<T>(turning, arm);
-    const Vector3<T> lateral{T(0), n[2], -n[1]};
-    const T slip_x = speed[0] / V, slip_y = dot<T>(speed, lateral) / V,
-            spin = dot<T>(turning, n) / V;
-    Vector3<T> force = normal * n + (-kCreep[1] * slip_y - kCreep[2] * spin) * lateral;
-    force[0] += -kCreep[0] * slip_x;
-    const Vector3<T> moment = cross<T>(arm, force) + (kCreep[2] * slip_y - kCreep[3] * spin) * n;
+    std::vector<Touch<T>> touches;
+    T all(0);
+    for (const Surface& s : surfaces_) {
+      touches.push_back(touch<T>(s, side, c, e));
+      all += touches.back().force;
+    }
+    Vector3<T> force = Vector3<T>::Zero(), moment = Vector3<T>::Zero();
+    for (const Touch<T>& at : touches) {
+      if (flange_.friction > 0. && !(std::real(at.force) > 0.)) continue;
+      const Vector3<T> slip = speed + cross<T>(turning, at.arm),
+                       lateral{T(0), at.normal[2], -at.normal[1]};
+      const Creep<T> creep =
+          creep_force<T>(flange_, at.force, at.force / all, slip[0] / V, dot<T>(slip, lateral) / V,
+                         dot<T>(turning, at.normal) / V);
+      Vector3<T> own = at.force * at.normal + creep.y * lateral;
+      own[0] += creep.x;
+      force += own;
+      moment += cross<T>(at.arm, own) + creep.moment * at.normal;
+    }
     Eigen::Matrix<T, 6, 1> sum;
     sum << force, dot<T>(moment, x), dot<T>(moment, e), moment[2];
     return sum;
@@ -371,21 +341,36 @@ class Vehicle {
   }
 
   Curve c_;
+  Flange flange_;
   double beta_;
+  std::vector<Surface> surfaces_;
   std::vector<Element> elements_;
 };
 
-/// The wheels of the steady state, by continuation in the curvature.
-inline std::vector<Wheel> steady_wheels(Curve curve, double* drag) {
+struct Steady {
+  std::vector<Wheel> wheels;   // left and right of each wheelset
+  std::vector<double> y, yaw;  // m and rad, of the wheelsets
+  double drag;                 // N
+};
+
+/// The steady state by continuation in the curvature.
+inline Steady steady_state(Curve curve, const Flange& flange = {}) {
   const Curve full = curve;
   Motions<double> x = Vehicle::at_rest();
-  for (const double part : {.05, .2, .5, 1.}) {
+  const std::vector<double> linear = {.05, .2, .5, 1.},
+                            limited = {.02, .1, .2, .3, .4, .5, .6, .7, .8, .9, 1.};
+  for (const double part : flange.friction > 0. ? limited : linear) {
     curve.curvature = part * full.curvature;
     curve.cant = part * full.cant;
-    x = Vehicle(curve).steady(x);
+    x = Vehicle(curve, flange).steady(x);
   }
-  *drag = Vehicle(curve).drag(x);
-  return Vehicle(curve).wheels(x);
+  const Vehicle vehicle(curve, flange);
+  Steady found{vehicle.wheels(x), {}, {}, vehicle.drag(x)};
+  for (int i = 3; i < kBodies; ++i) {
+    found.y.push_back(x[6 * i + 1]);
+    found.yaw.push_back(x[6 * i + 5]);
+  }
+  return found;
 }
 
 }  // namespace railstep::exact
