@@ -1,4 +1,5 @@
 #include <Eigen/Dense>
+#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <utility>
@@ -135,14 +136,22 @@ class SteadySearch {
   /// @param hold  1/s2: masses times this lead the vehicle to where it runs, less in each iteration
   ///              and in the end not at all. It then finds flanks that Newton's method by itself
   ///              leaps over.
-  std::optional<SteadyRunning> find(double hold) const {
+  /// @param farthest  m, rad and rad/s: more is held again where a step would go farther
+  std::optional<SteadyRunning> find(double hold, double farthest) const {
     constexpr int kCap = 120;
-    constexpr double kLess = .8, kFree = 1.;
+    constexpr double kLess = .8, kMore = 8., kFree = 1.;
     SteadyRunning s = start();
-    for (int i = 0; i<kCap; ++i, hold = kLess * hold> kFree ? kLess * hold : 0.) {
-      const double change = improve(hold, s);
+    for (int i = 0; i < kCap; ++i) {
+      SteadyRunning next = s;
+      const double change = improve(hold, next);
       if (!std::isfinite(change)) break;
+      if (change > farthest || (farthest < HUGE_VAL && !touches(next))) {
+        hold = kMore * std::max(hold, kFree);
+        continue;
+      }
+      s = std::move(next);
       if (hold == 0. && change < 1e-11 && touches(s)) return s;
+      hold = kLess * hold > kFree ? kLess * hold : 0.;
     }
     return std::nullopt;
   }
@@ -220,10 +229,11 @@ class SteadySearch {
 SteadyRunning steady_running(const Runner& runner, const RunnerMatrices& m,
                              const RollingContact& contact, double speed,
                              const std::vector<RailsUnder>& rails) {
-  constexpr double kLed = 1e5;  // 1/s2
+  constexpr double kLed = 1e5, kFar = .1;  // 1/s2; m, rad and rad/s
+  constexpr std::pair<double, double> kWays[] = {{0., HUGE_VAL}, {kLed, HUGE_VAL}, {kLed, kFar}};
   const SteadySearch search(runner, m, contact, speed, rails);
-  for (const double hold : {0., kLed})
-    if (std::optional<SteadyRunning> found = search.find(hold)) return *std::move(found);
+  for (const auto& [hold, farthest] : kWays)
+    if (std::optional<SteadyRunning> found = search.find(hold, farthest)) return *std::move(found);
   fail("E-VEHICLE-23",
        "no steady motion of the vehicle with all wheels on their rails was found; expected a "
        "suspension that holds each body in every direction, and rails that are not too uneven");

@@ -137,12 +137,23 @@ void look(const LowestLine& line, Search& search) noexcept {
   }
 }
 
-/// A minimum of the gap, and the strips up to which its zone goes.
-struct Minimum {
-  int at, first, last;
-  double place, gap;  // m, between strips too
-  double apart;       // 1: a zone by itself; 0: one with the minimum before
+/// A point of the gap between the search's strips: the strip next to it, its place and the gap, m.
+struct GapPoint {
+  int at;
+  double place, gap;
 };
+
+/// A minimum of the gap, and the ends up to which its zone goes: ridges, or ends of the search.
+struct Minimum {
+  int at;
+  double place, gap;  // m, between strips too
+  GapPoint from, to;
+  double apart;  // 1: a zone by itself; 0: one with the minimum before
+};
+
+GapPoint end_of(const Search& search, int strip) noexcept {
+  return {strip, search.place[strip], search.gap[strip]};
+}
 
 /// The minimum about a strip of the search, by the parabola through three finer ones.
 Minimum minimum_at(const LowestLine& line, const Search& search, int i) noexcept {
@@ -154,7 +165,7 @@ Minimum minimum_at(const LowestLine& line, const Search& search, int i) noexcept
   int least = 0;
   for (int k = 1; k < kFineStrips; ++k)
     if (gap[k] < gap[least]) least = k;
-  Minimum found{i, 0, kSearchStrips - 1, s[least], gap[least], 1.};
+  Minimum found{i, s[least], gap[least], end_of(search, 0), end_of(search, kSearchStrips - 1), 1.};
   if (least == 0 || least == kFineStrips - 1) return found;
   const double half = .5 * (gap[least + 1] - gap[least - 1]),
                bend = gap[least + 1] - 2. * gap[least] + gap[least - 1];
@@ -174,6 +185,21 @@ int ridge_between(const Search& search, int from, int to) noexcept {
   for (int i = from + 1; i <= to; ++i)
     if (search.gap[i] > search.gap[highest]) highest = i;
   return highest;
+}
+
+/// The same between strips, by the parabola through the highest one and those beside it.
+GapPoint ridge_point(const Search& search, int from, int to) noexcept {
+  const int at = ridge_between(search, from, to);
+  GapPoint ridge = end_of(search, at);
+  if (at == from || at == to) return ridge;
+  const double *const s = search.place + at, *const g = search.gap + at;
+  const double before = (g[0] - g[-1]) / (s[0] - s[-1]), after = (g[1] - g[0]) / (s[1] - s[0]);
+  const double bend = (after - before) / (s[1] - s[-1]);
+  if (!(bend < 0.)) return ridge;
+  const double slope = before + bend * (s[0] - s[-1]), way = -.5 * slope / bend;
+  ridge.place += way;
+  ridge.gap += way * (slope + bend * way);
+  return ridge;
 }
 
 double apart(const Search& search, const Minimum& a, const Minimum& b,
@@ -202,15 +228,14 @@ int find_minima(const LowestLine& line, const Search& search, double least_depth
     const Minimum own = minimum_at(line, search, i);
     if (count > 0) {
       Minimum& last = found[count - 1];
-      const int ridge = ridge_between(search, last.at, i);
       if (!(apart(search, last, own, least_depth) > 0.) || count == kMostMinima) {
-        if (own.gap < last.gap) last = {i, last.first, last.last, own.place, own.gap, 1.};
+        if (own.gap < last.gap) last = {i, own.place, own.gap, last.from, last.to, 1.};
         continue;
       }
-      last.last = ridge;
+      last.to = ridge_point(search, last.at, i);
     }
     found[count] = own;
-    if (count > 0) found[count].first = found[count - 1].last;
+    if (count > 0) found[count].from = found[count - 1].to;
     ++count;
   }
   return count;
@@ -233,15 +258,15 @@ Minimum as_one(const Minimum* from, const Minimum* to) noexcept {
   Minimum one = *from;
   for (const Minimum* own = from + 1; own <= to; ++own)
     if (own->gap < one.gap) one = *own;
-  one.first = from->first;
-  one.last = to->last;
+  one.from = from->from;
+  one.to = to->to;
   return one;
 }
 
 /// Places to both sides of a minimum at which the gap meets a level: between the strips of the
 /// search a and a + 1, and b - 1 and b. The root of the gap above the minimum is straight where the
 /// gap is a parabola: one step along it from where it would be by the strips, by the gap there. At
-/// the end of a profile, or of the zone, it is the outer strip.
+/// the end of a profile, or of the zone, it is that end.
 struct Edges {
   double from, to;
 };
@@ -250,11 +275,13 @@ Edges edges_of(const LowestLine& line, const Search& search, const Minimum& own,
   const auto root = [&](double gap) noexcept -> double {
     return gap > own.gap ? square_root(gap - own.gap) : 0.;
   };
-  const int outer[2] = {a, b}, inner[2] = {a + 1, b - 1};
+  const GapPoint outer[2] = {a == own.from.at ? own.from : end_of(search, a),
+                             b == own.to.at ? own.to : end_of(search, b)};
+  const int inner[2] = {a + 1, b - 1};
   const double wanted = root(level);
   double place[2], gap[2], per_root[2], most[2];
   for (int side = 0; side < 2; ++side) {
-    const double from = search.place[outer[side]], far = search.gap[outer[side]];
+    const double from = outer[side].place, far = outer[side].gap;
     const bool is_beyond =
         side == 0 ? search.place[inner[side]] > own.place : search.place[inner[side]] < own.place;
     most[side] = is_beyond ? own.place : search.place[inner[side]];
@@ -265,7 +292,7 @@ Edges edges_of(const LowestLine& line, const Search& search, const Minimum& own,
   }
   line.gaps(place, 2, gap);
   for (int side = 0; side < 2; ++side) {
-    const double from = search.place[outer[side]],
+    const double from = outer[side].place,
                  found = place[side] + (wanted - root(gap[side])) * per_root[side];
     const double low = side == 0 ? from : most[side], high = side == 0 ? most[side] : from;
     place[side] = found < low ? low : found < high ? found : high;
@@ -288,13 +315,25 @@ void take_plane(const LowestLine& line, double place, WheelZone& zone) noexcept 
   zone.patch.radius = (line.pair.radius + wheel.value) / zone.cosine_of_wheel;
 }
 
-void fill_zone(const LowestLine& line, const Search& search, const Minimum& own, double least_depth,
-               WheelZone& zone) noexcept {
+/// A strip that has neighbours.
+int within(int strip) noexcept {
+  return strip < 1 ? 1 : strip < kSearchStrips - 1 ? strip : kSearchStrips - 2;
+}
+
+/// Fills a zone about minima. All that overlap are in it, whatever the ridges between them.
+void fill_zone(const LowestLine& line, const Search& search, const Minimum* from_minimum,
+               const Minimum* to_minimum, double least_depth, WheelZone& zone) noexcept {
+  const Minimum own = as_one(from_minimum, to_minimum);
   const double level = own.gap + kAllowance * (level_of(own.gap, least_depth) - own.gap);
-  const int inner = own.at > 0 ? own.at < kSearchStrips - 1 ? own.at : kSearchStrips - 2 : 1;
-  int a = inner - 1, b = inner + 1;
-  while (a > own.first && search.gap[a] < level) --a;
-  while (b < own.last && search.gap[b] < level) ++b;
+  int first = own.at, last_overlaps = own.at;
+  for (const Minimum* each = from_minimum; each <= to_minimum; ++each) {
+    if (!(search.gap[each->at] < level)) continue;
+    if (each->at < first) first = each->at;
+    if (each->at > last_overlaps) last_overlaps = each->at;
+  }
+  int a = within(first) - 1, b = within(last_overlaps) + 1;
+  while (a > own.from.at && search.gap[a] < level) --a;
+  while (b < own.to.at && search.gap[b] < level) ++b;
   const auto [from, to] = edges_of(line, search, own, a, b, level);
   const double width = (to - from) / (kZoneStrips - 1);
   double s[kZoneStrips + 1], gap[kZoneStrips + 1];
@@ -339,7 +378,7 @@ int find_zones(const ProfilePair& pair, const WheelsetPlace& at, double least_de
   for_each_share(
       count, [&](int i) noexcept { return found[i].apart; },
       [&](int first, int last, double share) noexcept {
-        fill_zone(line, search, as_one(found + first, found + last), least_depth, zone[zones]);
+        fill_zone(line, search, found + first, found + last, least_depth, zone[zones]);
         zone[zones++].share = share;
       });
   return zones;
