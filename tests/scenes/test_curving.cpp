@@ -65,7 +65,9 @@ TEST_CASE("wheel forces in steady curves are those of a model that linearises no
         Case{{kOfOneTenth, 28., 1. / 600., .1}, 5e-4},
         Case{{kOfTwoTenths, 36., 1. / 1000., .1}, 5e-4},
         Case{{kOfOneTenth, 60., 1. / 3000., .1}, 5e-4}, Case{{.12, 25., 1. / 800., 0.}, 5e-4}}) {
-    const auto [exactly, shifts, yaws, drag] = exact::steady_state(curve);
+    const exact::Steady steady = exact::steady_state(curve);
+    const std::vector<exact::Wheel>& exactly = steady.wheels;
+    const double drag = steady.drag;
     const RunningLoads loads = running_loads(in_curve(curve));
     REQUIRE(loads.wheels.size() == exactly.size());
     double q = 0., y = 0., t = 0., dq = 0., dy = 0., dt = 0.;

@@ -6,6 +6,8 @@
 #include <vector>
 
 #include "answer/scene_running.h"
+#include "offline/runner/curving.h"
+#include "offline/runner/running.h"
 #include "support/exact_vehicle.h"
 #include "support/scene_run.h"
 #include "support/shipped.h"
@@ -64,4 +66,66 @@ TEST_CASE("wheel forces on flanges with friction are those of a model that linea
     // The models differ by the flange's approach alone.
     CHECK(std::fabs(loads.wheelsets[0].y - exactly.y[0]) < 2e-5);
   }
+}
+
+namespace {
+
+/// The stiffness of small motions in a curve, in the order of the exact model's bodies.
+Eigen::MatrixXd stiffness_in_curve(const Scene& scene, const exact::Curve& curve, bool turned) {
+  const RailVehicleScene& v = scene.rail_vehicles.front();
+  RunningOn on;
+  on.line = design_line(scene.design_line, reach_of(v.runner));
+  on.gravity = v.gravity;
+  const RunnerMatrices loaded = runner_matrices(v.runner, v.gravity);
+  Running here = running_on(on, v.runner, loaded, v.contact, curve.speed);
+  if (!turned) here.matrices.turned.setZero();
+  const SteadyRunning steady =
+      steady_running(v.runner, here.matrices, v.contact, curve.speed, here.rails);
+  const Eigen::MatrixXd K =
+      linear_running(v.runner, here.matrices, v.contact, curve.speed, steady, {here.rails})
+          .stiffness;
+  Eigen::MatrixXd sorted(exact::kSize, exact::kSize);
+  std::vector<Eigen::Index> from;
+  for (const char* name :
+       {"car", "bogie_1", "bogie_2", "leading_1", "trailing_1", "leading_2", "trailing_2"})
+    for (std::size_t b = 0; b < v.runner.bodies.size(); ++b)
+      if (v.runner.bodies[b].name == name)
+        for (Eigen::Index k = 0; k < 6; ++k) from.push_back(6 * static_cast<Eigen::Index>(b) + k);
+  REQUIRE(from.size() == std::size_t{exact::kSize});
+  for (Eigen::Index i = 0; i < exact::kSize; ++i)
+    for (Eigen::Index j = 0; j < exact::kSize; ++j)
+      sorted(i, j) = K(from[static_cast<std::size_t>(i)], from[static_cast<std::size_t>(j)]);
+  return sorted;
+}
+
+/// The largest entry of a difference of stiffnesses over those of its row and column. Pitches of
+/// wheelsets are not there: the exact model has rates in their places.
+double difference(const Eigen::MatrixXd& K, const Eigen::MatrixXd& exactly) {
+  double most = 0.;
+  const auto is_spin = [](Eigen::Index i) { return i >= 18 && i % 6 == 4; };
+  for (Eigen::Index i = 1; i < K.rows(); ++i)
+    for (Eigen::Index j = 1; j < K.cols(); ++j)
+      if (!is_spin(i) && !is_spin(j)) {
+        const double own =
+            std::fabs(K(i, j) - exactly(i, j)) / std::sqrt(exactly(i, i) * exactly(j, j));
+        if (!std::isfinite(own)) return own;
+        most = std::max(most, own);
+      }
+  return most;
+}
+
+}  // namespace
+
+TEST_CASE("small motions in a curve meet the stiffness of the model that linearises nothing",
+          "[curving]") {
+  const exact::Curve curve{.168206167, 20., 1. / 300., .1};
+  const Eigen::MatrixXd exactly = -exact::steady_state(curve).slopes;
+  const Scene scene = read_scene(
+      shipped("manchester_curve"),
+      {"line.curvature_table=[[0.0,3.3333333333333333e-3]]", "vehicle[0].speed_m_per_s=20.0"});
+  const double with = difference(stiffness_in_curve(scene, curve, true), exactly),
+               without = difference(stiffness_in_curve(scene, curve, false), exactly);
+  CAPTURE(with, without);
+  CHECK(with < 1e-3);
+  CHECK(without > 3. * with);
 }

@@ -90,13 +90,7 @@ class Vehicle {
   Motions<double> steady(Motions<double> x) const {
     for (int i = 0; i < 60; ++i) {
       const Motions<double> left = residual<double>(x);
-      Eigen::MatrixXd J(kSize, kSize);
-      constexpr double kStep = 1e-30;
-      for (int n = 0; n < kSize; ++n) {
-        Motions<Complex> y = x.cast<Complex>();
-        y[n] += Complex(0., kStep);
-        J.col(n) = residual<Complex>(y).imag() / kStep;
-      }
+      const Eigen::MatrixXd J = slopes(x);
       const Eigen::VectorXd step =
           J.bottomRightCorner(kSize - 1, kSize - 1).partialPivLu().solve(-left.tail(kSize - 1));
       const double most = step.cwiseAbs().maxCoeff();
@@ -104,6 +98,17 @@ class Vehicle {
       if (most < 1e-11) break;
     }
     return x;
+  }
+  /// Derivatives of the forces that are left, over the motions at the same places as in steady().
+  Eigen::MatrixXd slopes(const Motions<double>& x) const {
+    constexpr double kStep = 1e-30;
+    Eigen::MatrixXd J(kSize, kSize);
+    for (int n = 0; n < kSize; ++n) {
+      Motions<Complex> y = x.cast<Complex>();
+      y[n] += Complex(0., kStep);
+      J.col(n) = residual<Complex>(y).imag() / kStep;
+    }
+    return J;
   }
   static Motions<double> at_rest() {
     Motions<double> x = Motions<double>::Zero();
@@ -351,6 +356,7 @@ struct Steady {
   std::vector<Wheel> wheels;   // left and right of each wheelset
   std::vector<double> y, yaw;  // m and rad, of the wheelsets
   double drag;                 // N
+  Eigen::MatrixXd slopes;      // [kSize][kSize] as of Vehicle
 };
 
 /// The steady state by continuation in the curvature.
@@ -365,7 +371,7 @@ inline Steady steady_state(Curve curve, const Flange& flange = {}) {
     x = Vehicle(curve, flange).steady(x);
   }
   const Vehicle vehicle(curve, flange);
-  Steady found{vehicle.wheels(x), {}, {}, vehicle.drag(x)};
+  Steady found{vehicle.wheels(x), {}, {}, vehicle.drag(x), vehicle.slopes(x)};
   for (int i = 3; i < kBodies; ++i) {
     found.y.push_back(x[6 * i + 1]);
     found.yaw.push_back(x[6 * i + 5]);

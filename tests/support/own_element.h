@@ -10,18 +10,20 @@
 
 namespace railstep {
 
-/// A shipped scene with manchester_1 and more elements in its file.
-/// @param elements  whole [[element]] tables
-inline Scene scene_with_elements(const std::string& elements, const std::string& scene,
-                                 std::vector<std::string> words) {
-  const std::filesystem::path folder = fresh_folder("own_element");
-  std::filesystem::create_directories(folder);
-  const auto file = folder / "vehicle.toml";
+/// A file of manchester_1 with more elements. @param elements  whole [[element]] tables
+inline std::string vehicle_with_elements(const std::string& elements) {
+  const auto file = fresh_folder("own_element") / "vehicle.toml";
   std::ofstream(file) << text_of(std::filesystem::path(RAILSTEP_SOURCE) / "config" / "vehicles" /
                                  "manchester_1.toml")
                       << "\n"
                       << elements;
-  words.push_back("vehicle[0].file=\"" + file.string() + "\"");
+  return file.string();
+}
+
+/// A shipped scene with such a vehicle.
+inline Scene scene_with_elements(const std::string& elements, const std::string& scene,
+                                 std::vector<std::string> words) {
+  words.push_back("vehicle[0].file=\"" + vehicle_with_elements(elements) + "\"");
   return read_scene(shipped(scene), words);
 }
 

@@ -207,6 +207,7 @@ TraceNames names_of(const Scene& scene, std::vector<std::string> track_sensors) 
     names.rods.insert(names.rods.end(), vehicle.rods.begin(), vehicle.rods.end());
     names.force_elements.insert(names.force_elements.end(), vehicle.force_elements.begin(),
                                 vehicle.force_elements.end());
+    names.traced.insert(names.traced.end(), vehicle.traced.begin(), vehicle.traced.end());
     for (const std::string& set : vehicle.wheelsets) {
       names.runner_wheelsets.push_back(set);
       names.runner_wheels.insert(names.runner_wheels.end(), {set + "_left", set + "_right"});

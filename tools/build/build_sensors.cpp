@@ -130,25 +130,9 @@ void add_bodies(const RailVehicleScene& vehicle, const RailVehicleScene::Part& p
   }
 }
 
-/// The tension of a coupler by its elongation. Rigid rods have columns of their own.
-void add_coupler(const RailVehicleScene& vehicle, const RunnerElement& element, std::size_t index,
-                 Sensors& sensors) {
-  const Eigen::VectorXd row = elongation(vehicle.runner, element);
-  TrackSensor sensor{.rest = element.preload[0],
-                     .displacement = element.stiffness[0],
-                     .velocity = element.damping[0]};
-  sensor.runner = {RunnerSum::Of::rail_vehicle, index, {}};
-  for (Eigen::Index k = 0; k < row.size(); ++k)
-    if (row[k] != 0.) sensor.runner->parts.push_back({static_cast<int>(k), row[k]});
-  sensors.columns.push_back(element.name + ".force_n");
-  sensors.track_sensors.push_back(std::move(sensor));
-}
-
 void add_in_space(const RailVehicleScene& vehicle, std::size_t index, Sensors& sensors) {
   for (const RailVehicleScene::Part& part : vehicle.parts)
     add_bodies(vehicle, part, index, sensors);
-  for (const std::size_t e : vehicle.couplers)
-    add_coupler(vehicle, vehicle.runner.elements[e], index, sensors);
 }
 
 void add_point(const std::string& name, const Point& point, Sensors& sensors) {

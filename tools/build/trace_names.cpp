@@ -27,6 +27,8 @@ struct ColumnNames {
         return names.rods;
       case ColumnOf::force_element:
         return names.force_elements;
+      case ColumnOf::traced_element:
+        return names.traced;
       case ColumnOf::external_wheel:
         return names.external_wheels;
       case ColumnOf::sensor:

@@ -10,8 +10,8 @@ namespace railstep {
 struct TraceNames {
   std::vector<std::string> loads, wheels;
   std::vector<std::string> flanges;  // names of the wheels that have one
-  std::vector<std::string> runner_wheels, runner_wheelsets, runners, rods,
-      force_elements;  // of vehicles in space
+  std::vector<std::string> runner_wheels, runner_wheelsets, runners, rods, force_elements,
+      traced;  // of vehicles in space
   std::vector<std::string> external_wheels;
   std::vector<std::string> track_sensors;    // whole names of columns
   std::vector<std::string> sensors;          // of a system

@@ -177,7 +177,7 @@ struct RailVehicleScene : RailVehicle {
   std::vector<std::string> wheelsets;  // NAME.BODY; their wheels are NAME.BODY_left and _right
   std::vector<std::string> rods;       // of rigid rods, in the order of the runner's elements
   std::vector<std::string> force_elements;
-  std::vector<std::size_t> couplers;  // elements along a line whose force is traced
+  std::vector<std::string> traced;  // of displacements that are published, by their elements
 };
 
 /// The speed of largest magnitude of a load, a wheelset or a vehicle, m/s.

@@ -70,7 +70,6 @@ void append(const RailVehicleScene& more, RailVehicleScene& train) {
     body.centre[0] += ahead;
     train.runner.bodies.push_back(body);
   }
-  for (std::size_t i : more.couplers) train.couplers.push_back(train.runner.elements.size() + i);
   for (RunnerElement element : more.runner.elements) {
     move_on(element, bodies, ahead);
     train.runner.elements.push_back(element);
@@ -88,8 +87,8 @@ void append(const RailVehicleScene& more, RailVehicleScene& train) {
     part.first += static_cast<std::size_t>(bodies);
     train.parts.push_back(part);
   }
-  for (auto names :
-       {&RailVehicleScene::wheelsets, &RailVehicleScene::rods, &RailVehicleScene::force_elements}) {
+  for (auto names : {&RailVehicleScene::wheelsets, &RailVehicleScene::rods,
+                     &RailVehicleScene::force_elements, &RailVehicleScene::traced}) {
     std::vector<std::string>& all = train.*names;
     all.insert(all.end(), (more.*names).begin(), (more.*names).end());
   }
@@ -105,11 +104,11 @@ void place(RunnerForceElement& e, double ahead_a, double ahead_b) {
   e.point_b[0] += e.along == RunnerForceElement::Along::line ? ahead_b : ahead_a;
 }
 
-void note_element(const RunnerElement& e, RailVehicleScene& train) {
-  if (e.kind == RunnerElement::Kind::rod)
-    train.rods.push_back(e.name);
-  else if (e.kind == RunnerElement::Kind::line && e.series[0] == 0.)
-    train.couplers.push_back(train.runner.elements.size());
+/// Couplers along a line are always in the trace.
+void note_element(RunnerElement& e, RailVehicleScene& train) {
+  if (e.kind == RunnerElement::Kind::rod) train.rods.push_back(e.name);
+  e.traced = e.traced || e.kind == RunnerElement::Kind::line;
+  train.traced.insert(train.traced.end(), traced_entries(e).size(), e.name);
 }
 void note_element(const RunnerForceElement& s, RailVehicleScene& train) {
   train.force_elements.push_back(s.name);

@@ -287,6 +287,8 @@ RailVehicleScene read_rail_vehicle(const Table& root, const Table& t, const Scen
     if (body.is_wheelset()) v.wheelsets.push_back(v.name + "." + body.name);
   for (const RunnerElement& element : v.runner.elements)
     if (element.kind == RunnerElement::Kind::rod) v.rods.push_back(v.name + "." + element.name);
+  for (const RunnerElement& element : v.runner.elements)
+    v.traced.insert(v.traced.end(), traced_entries(element).size(), v.name + "." + element.name);
   for (const RunnerForceElement& element : v.runner.force_elements)
     v.force_elements.push_back(v.name + "." + element.name);
   read_rolling(root, scene, v);

@@ -113,23 +113,27 @@ RunnerElement read_air_spring(const Table& t) {
   return e;
 }
 
-std::vector<RunnerPart> alone(const RunnerElement& element) { return {{element}}; }
 std::vector<RunnerPart> alone(const RunnerForceElement& element) { return {{element}}; }
+/// A linear element, which is in the trace if the file says so.
+std::vector<RunnerPart> linear(const Table& t, RunnerElement element) {
+  element.traced = t.boolean("trace", false);
+  return {{element}};
+}
 
 /// A function for each type of element, in the order of the names in read_runner_parts().
 using ReadParts = std::vector<RunnerPart> (*)(const Table& t);
 constexpr ReadParts kReadParts[] = {
-    [](const Table& t) { return alone(read_line(t, true, false, false)); },
-    [](const Table& t) { return alone(read_line(t, false, true, false)); },
-    [](const Table& t) { return alone(read_line(t, true, true, false)); },
-    [](const Table& t) { return alone(read_line(t, false, true, true)); },
-    [](const Table& t) { return alone(read_traction_rod(t)); },
-    [](const Table& t) { return alone(read_bushing(t)); },
-    [](const Table& t) { return alone(read_shear_spring(t)); },
-    [](const Table& t) { return alone(read_anti_roll_bar(t)); },
+    [](const Table& t) { return linear(t, read_line(t, true, false, false)); },
+    [](const Table& t) { return linear(t, read_line(t, false, true, false)); },
+    [](const Table& t) { return linear(t, read_line(t, true, true, false)); },
+    [](const Table& t) { return linear(t, read_line(t, false, true, true)); },
+    [](const Table& t) { return linear(t, read_traction_rod(t)); },
+    [](const Table& t) { return linear(t, read_bushing(t)); },
+    [](const Table& t) { return linear(t, read_shear_spring(t)); },
+    [](const Table& t) { return linear(t, read_anti_roll_bar(t)); },
     [](const Table& t) { return alone(read_bump_stop(t)); },
-    [](const Table& t) { return alone(read_rigid_rod(t)); },
-    [](const Table& t) { return alone(read_air_spring(t)); },
+    [](const Table& t) { return std::vector<RunnerPart>{{read_rigid_rod(t)}}; },
+    [](const Table& t) { return linear(t, read_air_spring(t)); },
     [](const Table& t) { return alone(read_nonlinear_damper(t)); },
     [](const Table& t) { return std::vector<RunnerPart>{read_friction(t)}; },
     read_support,

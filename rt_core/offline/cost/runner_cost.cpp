@@ -103,7 +103,8 @@ Cost poses_cost(const Model& model, const RunnerModel& runner) {
   const std::int64_t poses = kMotions * std::int64_t{runner.frames.pairs};
   return runner.frames.pairs *
              (kPose + 3 * line_tables_cost(line) + 2 * std::int64_t{line.pieces} * kLinePiece) +
-         (runner.element_coordinates + runner.rods) * work(2 * poses + 2, 2 * poses);
+         (runner.element_coordinates + runner.traced_elements + runner.rods) *
+             work(2 * poses + 2, 2 * poses);
 }
 /// Forces of the design line on a runner in a stage.
 Cost design_line_cost(const Model& model, const RunnerModel& runner) {
@@ -172,11 +173,13 @@ Cost publish_runners_cost(const Model& model) {
   for (std::int32_t i = 0; i < model.runners; ++i) {
     const RunnerModel& own = model.runner[i];
     const std::int64_t n = own.size;
-    const std::int64_t rows = own.rods + own.element_coordinates;
+    const std::int64_t traced = own.traced_elements,
+                       rows = own.rods + own.element_coordinates + 2 * traced;
     sum = sum + rows * (work(2 * n, 2 * n) + branching(10, 5)) +
           own.wheelsets * table_cost(own.travel.rows) + own.wheelsets * branching(40, 40) +
           elements_cost(own, 1) +
-          (rows > 0 && is_there(model.design_line) ? poses_cost(model, own) : Cost{});
+          (rows > 0 && is_there(model.design_line) ? (traced > 0 ? 2 : 1) * poses_cost(model, own)
+                                                   : Cost{});
   }
   return sum;
 }

@@ -329,6 +329,7 @@ class PackedModel {
   std::vector<bool> is_met_;  // each element; between parts of the traffic a ring has others
   bool moves_along_ = true;   // rows may have parts along x
   std::vector<std::unique_ptr<std::vector<FrameElement>>> frame_elements_;
+  std::vector<std::unique_ptr<std::vector<TracedElement>>> traced_elements_;
   std::vector<std::unique_ptr<std::vector<double>>> reals_;
   std::vector<std::unique_ptr<std::vector<std::int32_t>>> integers_;
 };

@@ -99,6 +99,33 @@ void add_elements(const RunnerMatrices& m, const Keep& keep, Model& model, Runne
   model.element_coordinates += packed.element_coordinates;
 }
 
+/// Rows over all coordinates of the displacements that are published, [size][rows].
+Eigen::MatrixXd traced_rows(const RunnerMatrices& m, Eigen::Index size) {
+  Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(size, static_cast<Eigen::Index>(m.traced.size()));
+  for (std::size_t i = 0; i < m.traced.size(); ++i)
+    rows.col(static_cast<Eigen::Index>(i)).head(m.mass.size()) = m.traced[i].row;
+  return rows;
+}
+
+std::vector<TracedElement> traced_elements(const RunnerMatrices& m, Model& model,
+                                           RunnerModel& packed) {
+  std::vector<TracedElement> all;
+  for (const RunnerMatrices::Traced& own : m.traced) {
+    all.push_back(own.element);
+    if (own.element.series != 0.) all.back().deflection += static_cast<std::int32_t>(m.mass.size());
+  }
+  packed.first_traced = model.runner_traced;
+  packed.traced_elements = static_cast<std::int32_t>(all.size());
+  model.runner_traced += packed.traced_elements;
+  if (packed.traced_elements > kMaxTracedElements || model.runner_traced > kMaxRunnerTraced)
+    refuse("E-PACK-63",
+           "elements with trace = true have more displacements than a model takes; expected at "
+           "most " +
+               std::to_string(kMaxTracedElements) + " of a rail vehicle and " +
+               std::to_string(kMaxRunnerTraced) + " of all");
+  return all;
+}
+
 void add_rods(const RunnerMatrices& m, Model& model, RunnerModel& packed) {
   packed.first_rod = model.runner_rods;
   packed.rods = static_cast<std::int32_t>(m.rods.cols());
@@ -178,6 +205,9 @@ void PackedModel::add_runner(const Track& track, const RailVehicle& vehicle) {
   add_elements(
       matrices, [this](const std::vector<double>& table) { return keep(table); }, model_, packed);
   add_rods(matrices, model_, packed);
+  traced_elements_.push_back(
+      std::make_unique<std::vector<TracedElement>>(traced_elements(matrices, model_, packed)));
+  packed.traced = traced_elements_.back()->data();
   packed.start = model_.lines > 0 ? model_.endless.origin + vehicle.start : vehicle.start;
   packed.rolls_freely = vehicle.rolls_freely ? 1 : 0;
   packed.start_speed = vehicle.rolls_freely ? vehicle.speed : 0.;
@@ -202,6 +232,7 @@ void PackedModel::add_runner(const Track& track, const RailVehicle& vehicle) {
   packed.element_compliance = keep(own);
   packed.element_row = keep(column_by_column(rows));
   packed.element_moved = keep(column_by_column(step.inverse * rows));
+  packed.traced_row = keep(column_by_column(traced_rows(matrices, n)));
   packed.rod_row = keep(column_by_column(m.held.rightCols(packed.rods)));
   Eigen::MatrixXd reaction = Eigen::MatrixXd::Zero(constraint_count(packed), n);
   reaction.bottomRows(step.reaction.rows()) = step.reaction;
@@ -258,6 +289,7 @@ void PackedModel::add_frames(const RailVehicle& vehicle, const RunnerMatrices& m
   frames.preload = keep(f.preload);
   if (f.series.rows() > 0) frames.series = keep(column_by_column(series));
   frames.elements_moved = keep(column_by_column(f.elements_moved.transpose()));
+  frames.traced_moved = keep(column_by_column(f.traced_moved.transpose()));
   if (packed.rods == 0) return;
   const Eigen::Index held = step.held.rows();
   const Eigen::MatrixXd shorter = -f.rods;  // what the bodies' motions have to make up for

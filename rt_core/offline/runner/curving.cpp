@@ -106,6 +106,25 @@ void append(const MatrixXd& values, std::vector<double>& to) {
   to.insert(to.end(), values.data(), values.data() + values.size());
 }
 
+/// RunnerMatrices::turned, by central differences.
+MatrixXd turned_stiffness(const DesignLine& line, const OnLine& at, const RunnerFrames& frames,
+                          const VectorXd& u) {
+  constexpr double kStep = 1e-5;  // m, rad: forces are smooth over 1 m and 1 rad
+  const Index n = u.size();
+  MatrixXd K(n, n);
+  VectorXd moved = u;
+  for (Index k = 0; k < n; ++k) {
+    VectorXd forces[2] = {VectorXd::Zero(n), VectorXd::Zero(n)};
+    for (const int side : {0, 1}) {
+      moved[k] = u[k] + (side == 0 ? -kStep : kStep);
+      add_pair_forces(line, at, frames, moved.data(), forces[side].data());
+    }
+    moved[k] = u[k];
+    K.col(k) = (forces[0] - forces[1]) / (2. * kStep);
+  }
+  return K;
+}
+
 }  // namespace
 
 double reach_of(const Runner& runner) {
@@ -153,6 +172,9 @@ FrameMatrices frame_matrices(const Runner& runner) {
   f.elements_moved.resize(static_cast<Index>(moved.size()), poses);
   for (std::size_t i = 0; i < moved.size(); ++i)
     f.elements_moved.row(static_cast<Index>(i)) = moved[i];
+  f.traced_moved.resize(static_cast<Index>(all.traced.size()), poses);
+  for (std::size_t i = 0; i < all.traced.size(); ++i)
+    f.traced_moved.row(static_cast<Index>(i)) = by_poses(all.traced[i].row, runner, pairs);
   for (Index i = 0; i < all.rods.cols(); ++i)
     f.rods.row(i) = by_poses(all.rods.col(i), runner, pairs);
   return f;
@@ -190,6 +212,7 @@ RunnerMatrices matrices_on(const DesignLine& line, const OnLine& at, const Runne
   VectorXd pose = VectorXd::Zero(f.elements_moved.cols());
   find_poses(line, at, frames, pose.data());
   add_pair_forces(line, at, frames, u.data(), m.rest.data());
+  m.turned = turned_stiffness(line, at, frames, u);
   add_frame_forces(line, at, {bodies, centre.data(), m.mass.data(), gravity}, 0., m.rest.data());
   for (std::size_t b = 0; b < runner.bodies.size(); ++b) {
     const RunnerBody& body = runner.bodies[b];

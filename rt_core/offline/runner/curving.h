@@ -12,7 +12,7 @@ struct FrameMatrices {
   std::vector<FrameElement> elements;
   std::vector<double> stiffness, preload;
   /// [of each][6 pairs] displacements of their rows; of force elements with those of their loads.
-  Eigen::MatrixXd series, elements_moved, rods;
+  Eigen::MatrixXd series, elements_moved, traced_moved, rods;
 };
 /// An element to the ground goes along with its body, and a brake is not moved.
 FrameMatrices frame_matrices(const Runner& runner);

@@ -42,7 +42,10 @@ struct RunnerElement {
   /// with its number has it in place of the linear stiffness.
   bool presses_only = false;
   double clearance = 0.;
+  bool traced = false;  // its displacements and forces are published
 };
+/// The entries of an element that are published: those that have a force.
+std::vector<int> traced_entries(const RunnerElement& element);
 
 /// An element that is not linear in its one displacement, that of body `a` against body `b`: along
 /// an axis of the track at a point, about it, or the elongation of the line between two points.

@@ -124,6 +124,7 @@ LinearRunning linear_running(const Runner& runner, const RunnerMatrices& m,
   LinearRunning linear{m.mass, damping_at_rest(m) - c.by_rate,
                        sticking_stiffness_at(m, steady.displacement) - c.by_displacement, m.series,
                        m.rods};
+  if (m.turned.size() > 0) linear.stiffness += m.turned;
   for (std::size_t b = 0; b < runner.bodies.size(); ++b) {
     const RunnerBody& body = runner.bodies[b];
     if (!body.is_wheelset()) continue;

@@ -190,6 +190,24 @@ void add_rod(const Runner& runner, const RunnerElement& e, RunnerMatrices& m) {
   m.stiffness += geometric_stiffness(runner, e);
 }
 
+/// @param series  of an entry: the number of its spring in series with a damper, or -1
+void add_traced(const RunnerElement& e, const std::vector<Spring>& springs,
+                const std::array<int, kMotions>& series, RunnerMatrices& m) {
+  const bool line = is_along_line(e);
+  const double sign = line ? -1. : 1.;  // a tension grows with the length
+  for (const int entry : traced_entries(e)) {
+    const auto k = static_cast<std::size_t>(entry);
+    TracedElement own{sign * e.stiffness[k], 0., 0., e.preload[k], 0, line ? kTracedLine : entry};
+    if (series[k] >= 0) {
+      own.series = sign * e.series[k];
+      own.deflection = series[k];
+    } else if (e.series[k] == 0.) {
+      own.damping = sign * e.damping[k];
+    }
+    m.traced.push_back({springs[k].row, own});
+  }
+}
+
 /// The deflection of least norm under a load, and the tensions of rods that keep their lengths.
 std::pair<VectorXd, VectorXd> deflection_under(const MatrixXd& K, const MatrixXd& rods,
                                                const VectorXd& load) {
@@ -216,6 +234,7 @@ RunnerMatrices runner_matrices(const Runner& runner, double gravity) {
                    -weights(runner, gravity),
                    {},
                    {},
+                   {},
                    MatrixXd::Zero(n, 0)};
   for (std::size_t b = 0; b < runner.bodies.size(); ++b)
     for (int d = 0; d < 3; ++d) {
@@ -228,14 +247,20 @@ RunnerMatrices runner_matrices(const Runner& runner, double gravity) {
       add_rod(runner, e, m);
       continue;
     }
-    for (const Spring& s : springs(runner, e)) {
+    const std::vector<Spring> own = springs(runner, e);
+    std::array<int, kMotions> number;
+    number.fill(-1);
+    for (const Spring& s : own) {
       const double damping = e.damping[s.entry], series = e.series[s.entry];
       if (!e.presses_only) m.stiffness += e.stiffness[s.entry] * s.row * s.row.transpose();
       if (series == 0.)
         m.damping += damping * s.row * s.row.transpose();
-      else if (damping > 0.)
+      else if (damping > 0.) {
+        number[s.entry] = static_cast<int>(m.series.size());
         m.series.push_back({s.row, series, damping});
+      }
     }
+    if (e.traced) add_traced(e, own, number, m);
     if (!has_preload(e)) continue;
     m.stiffness += geometric_stiffness(runner, e);
     m.rest += preload(runner, e);
@@ -243,6 +268,15 @@ RunnerMatrices runner_matrices(const Runner& runner, double gravity) {
   for (const RunnerForceElement& e : runner.force_elements)
     m.force_elements.push_back(made_element(runner, e, m));
   return m;
+}
+
+std::vector<int> traced_entries(const RunnerElement& e) {
+  if (!e.traced) return {};
+  if (is_along_line(e)) return {0};
+  std::vector<int> all;
+  for (std::size_t k = 0; k < e.stiffness.size(); ++k)
+    if (e.stiffness[k] > 0. || e.damping[k] > 0.) all.push_back(static_cast<int>(k));
+  return all;
 }
 
 VectorXd elongation(const Runner& runner, const RunnerElement& element) {

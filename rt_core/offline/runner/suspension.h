@@ -31,7 +31,16 @@ struct RunnerMatrices {
     double moved = 0., load_moved = 0.;
   };
   std::vector<Element> force_elements;
+  /// A displacement of a linear element that is published.
+  struct Traced {
+    Eigen::VectorXd row;    // [n]
+    TracedElement element;  // its deflection: the number of its `series`
+  };
+  std::vector<Traced> traced;
   Eigen::MatrixXd rods;  // [n][rods] elongation of each; with `rods_moved` it stays 0
+  /// [n][n] what frames that stand turned and aside add to the stiffness of small motions; empty
+  /// without a design line.
+  Eigen::MatrixXd turned = {};
   Eigen::VectorXd rods_moved = Eigen::VectorXd::Zero(rods.cols());  // as of Series
 };
 

@@ -56,7 +56,7 @@ static_assert(sizeof(BlockHeader) == 8 + 4 + 2 + 2 + 4 + 4 + 8 + 16 * (1 + kSect
 
 inline constexpr std::uint32_t kByteOrder = 0x01020304;
 /// Another major version is refused. A larger minor version only appends fields, and is read.
-inline constexpr std::uint16_t kBlockMajor = 26, kBlockMinor = 0;
+inline constexpr std::uint16_t kBlockMajor = 27, kBlockMinor = 0;
 inline constexpr std::int64_t kMostCheckFrames = 1000;
 inline constexpr std::size_t kSumAt = offsetof(BlockHeader, sum);
 inline constexpr std::size_t kCrcAt = offsetof(BlockHeader, crc);

@@ -273,6 +273,7 @@ void describe_track(Archive& a, Model& m) {
   a.count(m.runner_force_elements, kMaxRunnerForceElements);
   a.count(m.element_coordinates, 2 * m.runner_force_elements);
   a.count(m.element_memory, kMostElementMemory * m.runner_force_elements);
+  a.count(m.runner_traced, kMaxRunnerTraced);
   a.count(m.runner_rods, kMaxRunnerRods);
   describe(a, m.design_line);
   for (std::int32_t i = 0; i < m.runners; ++i) describe(a, m.runner[i], m.design_line);

@@ -10,6 +10,7 @@ namespace railstep {
 // Fields of what moves along a track, see describe.h.
 
 static_assert(is_flat<FrameElement>(0, 25));
+static_assert(is_flat<TracedElement>(2, 4));
 
 template <typename Archive>
 void describe(Archive& a, TravelModel& t) {
@@ -140,6 +141,10 @@ void describe(Archive& a, RunnerModel& r, const DesignLine& line) {
     a.reals(*of, n * r.element_coordinates);
   a.reals(r.element_compliance, r.element_coordinates);
   a.reals(r.compliance, meets * meets);
+  a.count(r.first_traced, kMaxRunnerTraced);
+  a.count(r.traced_elements, kMaxTracedElements);
+  a.structures(r.traced, r.traced_elements);
+  a.reals(r.traced_row, n * r.traced_elements);
   a.count(r.first_rod, kMaxRunnerRods);
   a.count(r.rods, kMaxRodsOfRunner);
   a.reals(r.rod_row, n * r.rods);
@@ -165,6 +170,7 @@ void describe(Archive& a, RunnerModel& r, const DesignLine& line) {
   a.count(series, 1);
   a.reals(f.series, series * n * poses);
   a.reals(f.elements_moved, poses * r.element_coordinates);
+  a.reals(f.traced_moved, poses * r.traced_elements);
   a.reals(f.rods, poses * r.rods);
   a.reals(f.rod_moved, r.rods > 0 ? n * poses : 0);
   a.reals(f.rod_reaction, r.rods > 0 ? poses * constraint_count(r) : 0);

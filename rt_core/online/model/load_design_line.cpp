@@ -81,6 +81,7 @@ bool frames_are_valid(const DesignLine& l, const RunnerModel& r) noexcept {
   if (!f.centre || !centres_are_moderate(f.centre, r.bodies) || !(f.gravity >= 0.)) return false;
   if (f.pairs == 0) return f.elements == 0;
   if (!f.stiffness || !f.preload || (r.force_elements > 0 && !f.elements_moved)) return false;
+  if (r.traced_elements > 0 && !f.traced_moved) return false;
   if (r.rods > 0 && (!f.rods || !f.rod_moved || !f.rod_reaction)) return false;
   return (f.elements == 0 || f.element) && pairs_are_valid(l, r);
 }

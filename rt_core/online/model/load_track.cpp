@@ -185,7 +185,7 @@ bool contact_is_valid(const RollingContact& c) noexcept {
 /// How many wheelsets, rods and force elements runners have, with the coordinates and the memory of
 /// the latter.
 struct RunnerCounts {
-  std::int32_t wheelsets = 0, rods = 0, elements = 0, coordinates = 0, memory = 0;
+  std::int32_t wheelsets = 0, rods = 0, elements = 0, coordinates = 0, memory = 0, traced = 0;
 };
 
 /// A curve that does not fall and has no leaps.
@@ -229,10 +229,23 @@ bool elements_are_valid(const Model& m, const RunnerModel& r, const RunnerCounts
                                are_not_negative(r.element_compliance, coordinates)));
 }
 
+bool traced_are_valid(const RunnerModel& r, const RunnerCounts& before) noexcept {
+  if (r.traced_elements > 0 && (!r.traced || !r.traced_row)) return false;
+  for (std::int32_t i = 0; i < r.traced_elements; ++i) {
+    const TracedElement& e = r.traced[i];
+    for (const double x : {e.stiffness, e.damping, e.series, e.preload})
+      if (!is_moderate(x)) return false;
+    if (e.deflection < 0 || e.deflection >= r.size || e.axis < 0 || e.axis > kTracedLine)
+      return false;
+  }
+  return r.first_traced == before.traced;
+}
+
 /// Wheelsets are among the bodies, and follow those of the runners before, as rods and force
 /// elements do.
 bool runner_is_valid(const Model& m, const RunnerModel& r, const RunnerCounts& before) noexcept {
   if (!suspended_is_valid(m, r) || !elements_are_valid(m, r, before) || r.bodies < 1) return false;
+  if (!traced_are_valid(r, before)) return false;
   if (r.first_wheelset != before.wheelsets || r.wheelsets < 1) return false;
   if (r.rolls_freely != 0 && (!r.by_way || (m.lines > 0 && m.endless.bays != 0))) return false;
   if (r.first_rod != before.rods || !r.reaction || (r.rods > 0 && !r.rod_row)) return false;
@@ -254,13 +267,14 @@ bool runners_are_valid(const Model& m) noexcept {
     all.rods += r.rods;
     all.elements += r.force_elements;
     all.coordinates += r.element_coordinates;
+    all.traced += r.traced_elements;
     for (std::int32_t j = 0; j < r.force_elements; ++j)
       all.memory += memory_of(r.force_element[j].law);
   }
   return all.wheelsets == m.runner_wheelsets && all.rods == m.runner_rods &&
-         all.elements == m.runner_force_elements && all.coordinates == m.element_coordinates &&
-         all.memory == m.element_memory && newton_size(m) <= kMostNewton &&
-         (m.lines == 0 || all.wheelsets <= kMaxSeatedWheelsets);
+         all.traced == m.runner_traced && all.elements == m.runner_force_elements &&
+         all.coordinates == m.element_coordinates && all.memory == m.element_memory &&
+         newton_size(m) <= kMostNewton && (m.lines == 0 || all.wheelsets <= kMaxSeatedWheelsets);
 }
 
 /// Whether a contact of each kind is where its number says, with bodies that have it.

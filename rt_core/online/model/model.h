@@ -327,6 +327,7 @@ struct Model {
   std::int32_t runners, runner_wheelsets, runner_rods;  // the latter of all runners
   /// Force elements of all runners, their displacements, and the numbers that states keep of them.
   std::int32_t runner_force_elements, element_coordinates, element_memory;
+  std::int32_t runner_traced;  // displacements of linear elements that are published
   RunnerModel runner[kMaxRunners];
   std::int32_t external_wheels;
   ExternalWheelModel external_wheel[kMaxExternalWheels];

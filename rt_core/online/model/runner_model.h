@@ -75,6 +75,8 @@ inline constexpr int kWheelsetRank = 6;  // scalars of a wheelset: three forces 
 inline constexpr int kMaxRunners = 8;
 inline constexpr int kMaxForceElements = 32;                                     // of one runner
 inline constexpr int kMaxRunnerForceElements = kMaxRunners * kMaxForceElements;  // of all runners
+inline constexpr int kMaxTracedElements = 64;  // displacements of one runner's linear elements
+inline constexpr int kMaxRunnerTraced = 128;   // of all runners
 inline constexpr int kMaxRodsOfRunner = 8;
 inline constexpr int kMaxRunnerRods = 16;  // of all runners
 inline constexpr int kMaxWheelsetsOfRunner = 8;
@@ -120,10 +122,23 @@ struct RunnerFrames {
   const double* preload;    // [pairs][12] of its elements on both bodies, N and N m
   const double* series;  // [size][6 pairs] forces against poses by springs in series with dampers
   const double* elements_moved;  // [element_coordinates][6 pairs] displacement of each
+  const double* traced_moved;    // [traced_elements][6 pairs] displacement of each
   const double* rods;            // [rods][6 pairs] elongation of each
   const double* rod_moved;     // [size][6 pairs] displacements by which the rods keep their length
   const double* rod_reaction;  // [1 + rods][6 pairs] as `reaction`
 };
+
+/// A displacement z of a linear element that is published with its force, `preload` - `stiffness` z
+/// - `series` (z - d) - `damping` z'. It is the force on the first body, N or N m. Along a line z
+/// is the elongation and the force is the tension: the coefficients are then 0 or less.
+struct TracedElement {
+  double stiffness, damping;  // N/m, N s/m; N m/rad, N m s/rad
+  double series;              // of a spring in series with a damper, N/m; else 0
+  double preload;             // N, N m
+  std::int32_t deflection;    // the coordinate d of that damper; 0 without
+  std::int32_t axis;          // along x, y, z, about them, or kTracedLine
+};
+inline constexpr int kTracedLine = kMotions;
 
 /// A vehicle in space on both rails. q are the six motions of each body, then the deflection of
 /// each damper that is in series with a spring; such a coordinate has no mass. Constraints hold the
@@ -145,10 +160,13 @@ struct RunnerModel : SuspendedModel {
   std::int32_t first_element_coordinate, element_coordinates;
   /// [element_coordinates][size] over its coordinates; `inverse` times it.
   const double *element_row, *element_moved;
-  std::int32_t first_rod, rods;  // the first one among those of all runners
-  const double* rod_row;         // [rods][size] elongation of each
-  const double* reaction;        // [1 + rods][size] force ahead of the drive, then the tension of
-                                 // each rod, by a unit force along each coordinate
+  std::int32_t first_traced, traced_elements;  // the first one among those of all runners
+  const TracedElement* traced;                 // [traced_elements]
+  const double* traced_row;                    // [traced_elements][size] over its coordinates
+  std::int32_t first_rod, rods;                // the first one among those of all runners
+  const double* rod_row;                       // [rods][size] elongation of each
+  const double* reaction;  // [1 + rods][size] force ahead of the drive, then the tension of
+                           // each rod, by a unit force along each coordinate
   /// Compliance of each displacement of a force element by its own force, which its law meets by
   /// itself; 0 of loads.
   const double* element_compliance;

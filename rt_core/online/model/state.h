@@ -189,6 +189,8 @@ struct Outputs {
   double element_force[kMaxRunnerForceElements];
   /// m or rad, how far the first body has moved over the second one; of lines their ends apart.
   double element_travel[kMaxRunnerForceElements];
+  /// The same of those of linear elements that are published.
+  double traced_force[kMaxRunnerTraced], traced_travel[kMaxRunnerTraced];
   /// The point of the rail under each external wheel at the frame's end.
   bool external_on_rail[kMaxExternalWheels];
   double external_place[kMaxExternalWheels];            // m along the model's elements

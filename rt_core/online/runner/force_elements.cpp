@@ -144,15 +144,11 @@ StandingElement standing_element(const Model& model, const RunnerModel& runner, 
                         e.per_way * frame.speed;
   }
   if (is_damped(e) && poses != nullptr) {
-    const double dt = model.scheme.dt;
-    AlongTrack where = along_in(runner, at);
-    where.before = dt;
-    where.ahead -= dt * where.speed;
     double before[kMostPoses];
-    if (const double* const last = poses_of(model, runner, where, before); last != nullptr)
+    if (const double* const last = poses_before(model, runner, at, before); last != nullptr)
       step.rate_at_zero += (by_poses(runner, runner.frames.elements_moved, e.coordinate, poses) -
                             by_poses(runner, runner.frames.elements_moved, e.coordinate, last)) /
-                           dt;
+                           model.scheme.dt;
   }
   const double from = is_friction(e.law) ? z - step.memory[0] : z;
   const double load = e.loaded != 0 ? moved(e.coordinate + 1) : 0.;

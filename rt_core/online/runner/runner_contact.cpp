@@ -2,6 +2,7 @@
 
 #include "online/math/dense.h"
 #include "online/runner/force_elements.h"
+#include "online/runner/traced_elements.h"
 #include "online/track/travel.h"
 
 namespace railstep {
@@ -124,6 +125,14 @@ const double* poses_of(const Model& model, const RunnerModel& runner, const Alon
   return pose;
 }
 
+const double* poses_before(const Model& model, const RunnerModel& runner, const State& at,
+                           double* pose) noexcept {
+  AlongTrack where = along_in(runner, at);
+  where.before = model.scheme.dt;
+  where.ahead -= model.scheme.dt * where.speed;
+  return poses_of(model, runner, where, pose);
+}
+
 void add_line_forces(const Model& model, const RunnerModel& runner, const OnLine& at, double span,
                      const double* u, const double* v, double* force) noexcept {
   const DesignLine& line = model.design_line;
@@ -198,7 +207,7 @@ Status publish_runners(const Model& model, const State& at, Outputs& outputs) no
     const RunnerModel& runner = model.runner[n];
     for (int i = 0; i < runner.wheelsets; ++i) publish_wheelset(model, runner, i, at, outputs);
     double pose[kMostPoses];
-    const double* const poses = runner.force_elements + runner.rods > 0
+    const double* const poses = runner.force_elements + runner.rods + runner.traced_elements > 0
                                     ? poses_of(model, runner, along_in(runner, at), pose)
                                     : nullptr;
     publish_constraints(model, runner, at, poses, outputs);
@@ -208,6 +217,7 @@ Status publish_runners(const Model& model, const State& at, Outputs& outputs) no
           element.force.force + runner.force_element[j].preload;
       outputs.element_travel[runner.first_force_element + j] = element.z;
     }
+    publish_traced(model, runner, at, poses, outputs);
     if (has_large_turn(runner, at)) met = met | Status::large_turn;
   }
   return met;

@@ -29,6 +29,9 @@ inline constexpr int kMostPoses = kMotions * kMaxFramePairs;
 /// @returns pose; null without a design line
 const double* poses_of(const Model& model, const RunnerModel& runner, const AlongTrack& at,
                        double* pose) noexcept;
+/// The same one step before a state.
+const double* poses_before(const Model& model, const RunnerModel& runner, const State& at,
+                           double* pose) noexcept;
 /// Adds what a design line does to a runner: the forces of frames that accelerate and lean, those
 /// of the suspension between frames that stand turned and aside, and gyroscopic moments.
 /// @param span   s, as of frame_motion()

@@ -58,6 +58,8 @@ void copy_published(const Model& model, const Outputs& from, Outputs& to) noexce
   copy(from.rod_tension, to.rod_tension, model.runner_rods);
   copy(from.element_force, to.element_force, model.runner_force_elements);
   copy(from.element_travel, to.element_travel, model.runner_force_elements);
+  copy(from.traced_force, to.traced_force, model.runner_traced);
+  copy(from.traced_travel, to.traced_travel, model.runner_traced);
   copy(from.external_on_rail, to.external_on_rail, model.external_wheels);
   copy(from.external_place, to.external_place, model.external_wheels);
   copy(from.external_force, to.external_force, model.external_wheels);

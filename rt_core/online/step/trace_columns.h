@@ -49,6 +49,16 @@ inline constexpr OutputColumn<kMaxRunnerForceElements> kElementColumns[] = {
 inline constexpr OutputColumn<kMaxRunnerForceElements> kBrakeColumns[] = {
     {"moment_n_m", &Outputs::element_force}};
 
+/// By TracedElement::axis.
+inline constexpr OutputColumn<kMaxRunnerTraced> kTracedColumns[kTracedLine + 1][2] = {
+    {{"force_x_n", &Outputs::traced_force}, {"travel_x_m", &Outputs::traced_travel}},
+    {{"force_y_n", &Outputs::traced_force}, {"travel_y_m", &Outputs::traced_travel}},
+    {{"force_z_n", &Outputs::traced_force}, {"travel_z_m", &Outputs::traced_travel}},
+    {{"moment_x_n_m", &Outputs::traced_force}, {"roll_rad", &Outputs::traced_travel}},
+    {{"moment_y_n_m", &Outputs::traced_force}, {"pitch_rad", &Outputs::traced_travel}},
+    {{"moment_z_n_m", &Outputs::traced_force}, {"yaw_rad", &Outputs::traced_travel}},
+    {{"force_n", &Outputs::traced_force}, {"travel_m", &Outputs::traced_travel}}};
+
 /// A column of the rail under an external wheel.
 struct ExternalColumn {
   const char* name;
@@ -101,6 +111,7 @@ enum class ColumnOf {
   runner,
   rod,
   force_element,
+  traced_element,
   external_wheel,
   sensor,
   joint,
@@ -132,6 +143,10 @@ void for_each_column(const Model& model, Visit& visit) {
       else
         visit(ColumnOf::force_element, i, kElementColumns);
     }
+  for (std::int32_t r = 0; r < model.runners; ++r)
+    for (std::int32_t j = 0; j < model.runner[r].traced_elements; ++j)
+      visit(ColumnOf::traced_element, model.runner[r].first_traced + j,
+            kTracedColumns[model.runner[r].traced[j].axis]);
   for (std::int32_t i = 0; i < model.external_wheels; ++i)
     visit(ColumnOf::external_wheel, i, kExternalColumns);
   visit(model.track_sensor);
