@@ -128,16 +128,21 @@ std::vector<ModesAtSpeed> modes_at_speeds(const Scene& scene, const std::vector<
   return all;
 }
 
-std::optional<CriticalRunning> critical_speed_between(const Scene& scene, double from, double to) {
+std::optional<CriticalRunning> critical_speed_between(const Scene& scene, double from, double to,
+                                                      SpeedRange* searched) {
   check(scene);
   const std::vector<RunningOn> rails = rails_of(scene, scene.design_line);
   std::optional<CriticalRunning> least;
+  SpeedRange all{from, to};
   for (std::size_t i = 0; i < rails.size(); ++i) {
     const RailVehicleScene& v = scene.rail_vehicles[i];
+    SpeedRange range{from, to};
     const auto own =
-        critical_running_speed(v.runner, loaded_matrices(v), v.contact, from, to, rails[i]);
+        critical_running_speed(v.runner, loaded_matrices(v), v.contact, range, rails[i]);
+    all = {std::max(all.from, range.from), std::min(all.to, range.to)};
     if (own && (!least || own->speed < least->speed)) least = own;
   }
+  if (searched != nullptr) *searched = all;
   return least;
 }
 

@@ -8,9 +8,9 @@
 
 namespace railstep {
 
-/// Modes of the rail vehicles of a scene that run at a speed on straight, even rails, the lowest
-/// first. Rails that give way are there as they stand under the vehicle (standing_track.h). Throws
-/// InputError where the scene has no rail vehicle.
+/// Modes of the rail vehicles of a scene that run at a speed on even rails, straight or in the
+/// curve in which they start, the lowest first. Rails that give way are there as they stand under
+/// the vehicle (standing_track.h). Throws InputError where the scene has no rail vehicle.
 std::vector<RunningMode> modes_at_speed(const Scene& scene, double speed);
 
 /// The same at several speeds; one at which the vehicles find no steady motion has no modes.
@@ -21,7 +21,9 @@ struct ModesAtSpeed {
 std::vector<ModesAtSpeed> modes_at_speeds(const Scene& scene, const std::vector<double>& speeds);
 
 /// The lowest critical speed of the scene's rail vehicles between two speeds, m/s.
-std::optional<CriticalRunning> critical_speed_between(const Scene& scene, double from, double to);
+/// @param searched  out: as critical_running_speed() has it, of the vehicle with the smallest one
+std::optional<CriticalRunning> critical_speed_between(const Scene& scene, double from, double to,
+                                                      SpeedRange* searched = nullptr);
 
 /// Forces of a wheel on its rail in the track's axes, down and outwards, and of the rail on the
 /// wheel ahead, N.

@@ -24,19 +24,27 @@ struct CriticalOptions {
   bool json = false;
 };
 
-nlohmann::ordered_json to_json(const std::optional<CriticalRunning>& found) {
+nlohmann::ordered_json to_json(const std::optional<CriticalRunning>& found,
+                               const SpeedRange& searched) {
   const nlohmann::ordered_json none = nullptr;
   return {{"critical_speed_m_per_s", found ? nlohmann::ordered_json(found->speed) : none},
-          {"frequency_hz", found ? nlohmann::ordered_json(found->frequency) : none}};
+          {"frequency_hz", found ? nlohmann::ordered_json(found->frequency) : none},
+          {"from_m_per_s", searched.from},
+          {"to_m_per_s", searched.to}};
 }
 
-void print_text(const CriticalOptions& o, const std::optional<CriticalRunning>& found) {
+void print_text(const CriticalOptions& o, const std::optional<CriticalRunning>& found,
+                const SpeedRange& searched) {
   if (found)
     fmt::print("critical speed {:.6f} m/s ({:.3f} km/h), a mode of {:.5f} Hz\n", found->speed,
                3.6 * found->speed, found->frequency);
   else
     fmt::print("no mode loses its damping between {:g} and {:g} m/s, or one has none at {:g} m/s\n",
-               o.from, o.to, o.from);
+               searched.from, searched.to, searched.from);
+  if (searched.from > o.from)
+    fmt::print("below {:g} m/s the vehicle finds no steady motion\n", searched.from);
+  if (!found && searched.to < o.to)
+    fmt::print("above {:g} m/s the vehicle finds no steady motion\n", searched.to);
 }
 
 void write_page(const CriticalOptions& o, const Scene& scene,
@@ -55,12 +63,13 @@ Exit run_critical(const CriticalOptions& o) {
                                              o.from, o.to));
   if (!o.report.empty()) need_gnuplot();
   const Scene scene = read_scene(o.scene, o.overrides);
-  const auto found = critical_speed_between(scene, o.from, o.to);
+  SpeedRange searched;
+  const auto found = critical_speed_between(scene, o.from, o.to, &searched);
   if (!o.report.empty()) write_page(o, scene, found);
   if (o.json)
-    fmt::print("{}\n", to_json(found).dump(2));
+    fmt::print("{}\n", to_json(found, searched).dump(2));
   else
-    print_text(o, found);
+    print_text(o, found, searched);
   return Exit::done;
 }
 
@@ -69,7 +78,8 @@ Exit run_critical(const CriticalOptions& o) {
 Command add_critical(CLI::App& app) {
   auto o = std::make_shared<CriticalOptions>();
   CLI::App* sub = app.add_subcommand(
-      "critical", "The least speed at which a rail vehicle hunts, on straight, even rails");
+      "critical",
+      "The least speed at which a rail vehicle hunts, on even rails, straight or curved");
   sub->add_option("SCENE", o->scene, "scene file (TOML)")->required()->check(reads_file());
   sub->add_option("--from", o->from, "lowest speed, m/s (default 1)")->check(within(0.1, 1000.0));
   sub->add_option("--to", o->to, "highest speed, m/s (default 200)")->check(within(0.1, 1000.0));

@@ -7,6 +7,8 @@
 #include <complex>
 #include <numbers>
 
+#include "offline/math/refuse.h"
+
 namespace railstep {
 
 namespace {
@@ -84,21 +86,32 @@ std::vector<RunningMode> running_modes(const LinearRunning& linear) {
 }
 
 std::optional<CriticalRunning> critical_running_speed(const Runner& runner, const RunnerMatrices& m,
-                                                      const RollingContact& contact, double from,
-                                                      double to, const RunningOn& on) {
+                                                      const RollingContact& contact,
+                                                      SpeedRange& range, const RunningOn& on) {
+  const auto [from, to] = range;
+  const auto mode_at = [&](double speed) { return least_damped(runner, m, contact, speed, on); };
   const int steps = static_cast<int>(std::ceil(std::max(100., (to - from) / 2.)));
-  double low = from;
-  if (least_damped(runner, m, contact, low, on).real() >= 0.) return std::nullopt;
-  for (int i = 1; i <= steps; ++i) {
+  std::optional<double> low;
+  for (int i = 0; i <= steps; ++i) {
     double high = from + (to - from) * i / steps;
-    std::complex<double> s = least_damped(runner, m, contact, high, on);
+    std::complex<double> s;
+    try {
+      s = mode_at(high);
+    } catch (const Failed&) {
+      if (low) break;
+      if (i == steps) throw;
+      continue;
+    }
+    if (!low) range.from = high;
+    range.to = high;
+    if (s.real() >= 0. && !low) return std::nullopt;
     if (s.real() < 0.) {
       low = high;
       continue;
     }
-    while (high - low > 1e-10 * high) {
-      const double middle = .5 * (low + high);
-      const std::complex<double> there = least_damped(runner, m, contact, middle, on);
+    while (high - *low > 1e-10 * high) {
+      const double middle = .5 * (*low + high);
+      const std::complex<double> there = mode_at(middle);
       if (there.real() < 0.)
         low = middle;
       else {
