@@ -30,7 +30,7 @@ HardResult contact_jumps(const std::filesystem::path& scene) {
        largest_gap(run.column(kShift), fine.column(kShift)) / run.largest(kShift), 1e-3}};
   for (const char* load : kLoads)
     result.checks.push_back({std::string(load) + ": largest change within a step, over 60 kN",
-                             largest_step(run.column(load)) / 6e4, .01});
+                             largest_step(run.column(load)) / 6e4, 2e-3});
   check_energy(result, run, "", 1e-4, 1e-4);
   HardCurve left = run.curve(kLoads[0], "left", 1e-3), right = run.curve(kLoads[1], "right", 1e-3);
   result.picture = {"time, s", "wheel load, kN", {std::move(left), std::move(right)}};

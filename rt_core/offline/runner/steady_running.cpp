@@ -230,7 +230,8 @@ SteadyRunning steady_running(const Runner& runner, const RunnerMatrices& m,
                              const RollingContact& contact, double speed,
                              const std::vector<RailsUnder>& rails) {
   constexpr double kLed = 1e5, kFar = .1;  // 1/s2; m, rad and rad/s
-  constexpr std::pair<double, double> kWays[] = {{0., HUGE_VAL}, {kLed, HUGE_VAL}, {kLed, kFar}};
+  constexpr std::pair<double, double> kWays[] = {
+      {0., HUGE_VAL}, {kLed, HUGE_VAL}, {.1 * kLed, HUGE_VAL}, {kLed, kFar}};
   const SteadySearch search(runner, m, contact, speed, rails);
   for (const auto& [hold, farthest] : kWays)
     if (std::optional<SteadyRunning> found = search.find(hold, farthest)) return *std::move(found);
