@@ -5,7 +5,7 @@
 
 namespace railstep {
 
-// What values that were read from a block may be.
+// Checks of values that were read from a block.
 
 inline bool within(const std::int32_t* values, std::int64_t n, std::int64_t least,
                    std::int64_t most) noexcept {
