@@ -106,24 +106,24 @@ void append(const MatrixXd& values, std::vector<double>& to) {
   to.insert(to.end(), values.data(), values.data() + values.size());
 }
 
-/// RunnerMatrices::turned, by central differences.
-MatrixXd turned_stiffness(const DesignLine& line, const OnLine& at, const RunnerFrames& frames,
-                          const VectorXd& u) {
-  constexpr double kStep = 1e-5;  // m, rad: forces are smooth over 1 m and 1 rad
-  const Index n = u.size();
-  MatrixXd K(n, n);
-  VectorXd moved = u;
-  for (Index k = 0; k < n; ++k) {
-    VectorXd forces[2] = {VectorXd::Zero(n), VectorXd::Zero(n)};
-    for (const int side : {0, 1}) {
-      moved[k] = u[k] + (side == 0 ? -kStep : kStep);
-      add_pair_forces(line, at, frames, moved.data(), forces[side].data());
-    }
-    moved[k] = u[k];
-    K.col(k) = (forces[0] - forces[1]) / (2. * kStep);
+/// The frames of a runner's bodies, which point to the rest.
+struct LineFrames {
+  FrameMatrices matrices;
+  std::vector<double> centre;
+  RunnerFrames frames{};
+
+  explicit LineFrames(const Runner& runner)
+      : matrices(frame_matrices(runner)), centre(centres_of(runner)) {
+    frames.centre = centre.data();
+    set_pairs(matrices.pairs, frames);
+    frames.stiffness = matrices.stiffness.data();
+    frames.elements = static_cast<std::int32_t>(matrices.elements.size());
+    frames.element = matrices.elements.data();
+    frames.preload = matrices.preload.data();
   }
-  return K;
-}
+  LineFrames(const LineFrames&) = delete;
+  LineFrames& operator=(const LineFrames&) = delete;
+};
 
 }  // namespace
 
@@ -199,20 +199,14 @@ std::vector<double> centres_of(const Runner& runner) {
 RunnerMatrices matrices_on(const DesignLine& line, const OnLine& at, const Runner& runner,
                            const RunnerMatrices& matrices, double gravity, const VectorXd& u) {
   RunnerMatrices m = matrices;
-  const FrameMatrices f = frame_matrices(runner);
-  const std::vector<double> centre = centres_of(runner);
+  const LineFrames own(runner);
+  const FrameMatrices& f = own.matrices;
+  const std::vector<double>& centre = own.centre;
+  const RunnerFrames& frames = own.frames;
   const auto bodies = static_cast<std::int32_t>(runner.bodies.size());
-  RunnerFrames frames{};
-  frames.centre = centre.data();
-  set_pairs(f.pairs, frames);
-  frames.stiffness = f.stiffness.data();
-  frames.elements = static_cast<std::int32_t>(f.elements.size());
-  frames.element = f.elements.data();
-  frames.preload = f.preload.data();
   VectorXd pose = VectorXd::Zero(f.elements_moved.cols());
   find_poses(line, at, frames, pose.data());
   add_pair_forces(line, at, frames, u.data(), m.rest.data());
-  m.turned = turned_stiffness(line, at, frames, u);
   add_frame_forces(line, at, {bodies, centre.data(), m.mass.data(), gravity}, 0., m.rest.data());
   for (std::size_t b = 0; b < runner.bodies.size(); ++b) {
     const RunnerBody& body = runner.bodies[b];
@@ -229,6 +223,25 @@ RunnerMatrices matrices_on(const DesignLine& line, const OnLine& at, const Runne
   }
   m.rods_moved = f.rods * pose;
   return m;
+}
+
+MatrixXd turned_stiffness(const DesignLine& line, const OnLine& at, const Runner& runner,
+                          const VectorXd& u) {
+  const LineFrames own(runner);
+  constexpr double kStep = 1e-5;  // m, rad: forces are smooth over 1 m and 1 rad
+  const Index n = u.size();
+  MatrixXd K(n, n);
+  VectorXd moved = u;
+  for (Index k = 0; k < n; ++k) {
+    VectorXd forces[2] = {VectorXd::Zero(n), VectorXd::Zero(n)};
+    for (const int side : {0, 1}) {
+      moved[k] = u[k] + (side == 0 ? -kStep : kStep);
+      add_pair_forces(line, at, own.frames, moved.data(), forces[side].data());
+    }
+    moved[k] = u[k];
+    K.col(k) = (forces[0] - forces[1]) / (2. * kStep);
+  }
+  return K;
 }
 
 void set_frame_rates(const DesignLine& line, const OnLine& at, const Runner& runner,

@@ -32,6 +32,11 @@ RunnerMatrices matrices_on(const DesignLine& line, const OnLine& at, const Runne
                            const RunnerMatrices& matrices, double gravity,
                            const Eigen::VectorXd& u);
 
+/// RunnerMatrices::turned of a vehicle on a design line, by central differences.
+/// @param u  [n] motions
+Eigen::MatrixXd turned_stiffness(const DesignLine& line, const OnLine& at, const Runner& runner,
+                                 const Eigen::VectorXd& u);
+
 /// Sets the rates of the frames in the rails under each wheelset.
 /// @param rails  [wheelsets]; empty: straight and level ones are made
 void set_frame_rates(const DesignLine& line, const OnLine& at, const Runner& runner,

@@ -30,6 +30,7 @@ Running running_on(const RunningOn& on, const Runner& runner, const RunnerMatric
     u = found;
     if (change < 1e-12) break;
   }
+  running.matrices.turned = turned_stiffness(on.line, at, runner, u);
   return running;
 }
 
