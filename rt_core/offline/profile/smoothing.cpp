@@ -14,6 +14,7 @@ namespace {
 
 constexpr double kGap = 5e-3;   // m
 constexpr double kKink = .35;   // rad
+constexpr double kSwing = .5;   // rad
 constexpr double kFarOff = 8.;  // tolerances
 
 using Sparse = Eigen::SparseMatrix<double>;
@@ -59,6 +60,25 @@ void check_kinks(std::span<const Point> points) {
     if (kink[i] > kKink && kink[i] > 4. * beside)
       refuse("E-POINTS-05", "the points turn by " + std::to_string(kink[i]) + " rad at " +
                                 place_of(points[i]) + "; expected a surface without a kink");
+  }
+}
+
+/// Refuses a spline that swings between two of its points, as beside a step of steep sides: its
+/// ends and its middle turn away from the chord.
+void check_swing(const RunningSurface& spline) {
+  for (const SurfacePiece& piece : spline.pieces()) {
+    const double h = piece.to - piece.from;
+    const auto& c = piece.coefficients;
+    const double chord = std::atan(c[1] + h * (c[2] + h * c[3]));
+    for (const double y : {0., .5 * h, h}) {
+      const double swing = std::abs(std::atan(c[1] + y * (2. * c[2] + y * 3. * c[3])) - chord);
+      if (swing > kSwing)
+        refuse("E-POINTS-08", "between " + std::to_string(1e3 * piece.from) + " mm and " +
+                                  std::to_string(1e3 * piece.to) + " mm the surface turns by " +
+                                  std::to_string(swing) +
+                                  " rad away from the line between its points; expected " +
+                                  std::to_string(kSwing) + " rad at most");
+    }
   }
 }
 
@@ -165,7 +185,9 @@ RunningSurface through(std::span<const Point> points) {
                       0.,
                       {z[i], chord[i] - h[i] * (2. * a + b) / 6., .5 * a, (b - a) / (6. * h[i])}});
   }
-  return RunningSurface(std::move(pieces));
+  RunningSurface spline(std::move(pieces));
+  check_swing(spline);
+  return spline;
 }
 
 SmoothedPoints smoothed(std::span<const Point> points, double tolerance) {

@@ -24,8 +24,9 @@ struct SmoothedPoints {
 /// four times the mean of the turns beside it) and a point that lies over 8 tolerances off.
 SmoothedPoints smoothed(std::span<const Point> points, double tolerance);
 
-/// The natural cubic spline through points. Throws Refused for fewer than 4 points, and where their
-/// places do not rise.
+/// The natural cubic spline through points. Throws Refused for fewer than 4 points, where their
+/// places do not rise, and where the spline turns by over 0.5 rad away from the chord of two
+/// points.
 RunningSurface through(std::span<const Point> points);
 
 }  // namespace railstep

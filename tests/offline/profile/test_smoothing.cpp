@@ -83,4 +83,7 @@ TEST_CASE("points of no running surface are refused with their place", "[profile
   points = circle(2e-6, 100);
   points[75][1] += 1e-4;
   refused(points, 5e-6, "E-POINTS-06", " -5.0");
+  points = circle(0.);
+  for (std::size_t i = 50; i < points.size(); ++i) points[i][1] -= 2e-3;
+  refused(points, 0., "E-POINTS-08", " 4.0");
 }
