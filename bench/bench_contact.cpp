@@ -102,21 +102,26 @@ double error_of(CreepLaw law, int strips, bool spin) {
   return std::sqrt(sum / count);
 }
 
-void creep_law(benchmark::State& bench, CreepLaw law, int strips) {
+void creep_law(benchmark::State& bench, CreepLaw law, int strips, CreepWanted wanted) {
   const CreepPatch patch = normalised_patch(.7, kalker(.7, .3));
   Creepages<double> creepages = normalised_creepages(.8, .5, .2);
   for (auto _ : bench) {
     benchmark::DoNotOptimize(creepages);
-    benchmark::DoNotOptimize(creep_force(law, strips, patch, creepages));
+    benchmark::DoNotOptimize(creep_force(law, strips, patch, creepages, wanted));
   }
   bench.counters["no_spin_error"] = error_of(law, strips, false);
   bench.counters["spin_error"] = error_of(law, strips, true);
 }
-BENCHMARK_CAPTURE(creep_law, she, CreepLaw::she, 0);
-BENCHMARK_CAPTURE(creep_law, polach, CreepLaw::polach, 0);
-BENCHMARK_CAPTURE(creep_law, fastsim_5, CreepLaw::fastsim, 5);
-BENCHMARK_CAPTURE(creep_law, fastsim_10, CreepLaw::fastsim, 10);
-BENCHMARK_CAPTURE(creep_law, fastsim_20, CreepLaw::fastsim, 20);
+BENCHMARK_CAPTURE(creep_law, she, CreepLaw::she, 0, CreepWanted::slopes);
+BENCHMARK_CAPTURE(creep_law, she_force, CreepLaw::she, 0, CreepWanted::force);
+BENCHMARK_CAPTURE(creep_law, polach, CreepLaw::polach, 0, CreepWanted::slopes);
+BENCHMARK_CAPTURE(creep_law, polach_force, CreepLaw::polach, 0, CreepWanted::force);
+BENCHMARK_CAPTURE(creep_law, fastsim_5, CreepLaw::fastsim, 5, CreepWanted::slopes);
+BENCHMARK_CAPTURE(creep_law, fastsim_5_force, CreepLaw::fastsim, 5, CreepWanted::force);
+BENCHMARK_CAPTURE(creep_law, fastsim_10, CreepLaw::fastsim, 10, CreepWanted::slopes);
+BENCHMARK_CAPTURE(creep_law, fastsim_10_force, CreepLaw::fastsim, 10, CreepWanted::force);
+BENCHMARK_CAPTURE(creep_law, fastsim_20, CreepLaw::fastsim, 20, CreepWanted::slopes);
+BENCHMARK_CAPTURE(creep_law, fastsim_20_force, CreepLaw::fastsim, 20, CreepWanted::force);
 
 void coefficients(benchmark::State& bench) {
   double ratio = .7;

@@ -9,7 +9,8 @@ namespace {
 
 using Rate = Dual<3>;
 
-CreepPair<Rate> pair_of(CreepLaw law, const CreepPatch& patch, const Creepages<Rate>& c) noexcept {
+template <class Real>
+CreepPair<Real> pair_of(CreepLaw law, const CreepPatch& patch, const Creepages<Real>& c) noexcept {
   if (law == CreepLaw::linear) return creep::linear(patch, c);
   return law == CreepLaw::she ? creep::she(patch, c) : creep::polach(patch, c);
 }
@@ -17,8 +18,12 @@ CreepPair<Rate> pair_of(CreepLaw law, const CreepPatch& patch, const Creepages<R
 }  // namespace
 
 CreepForce creep_force(CreepLaw law, int strips, const CreepPatch& patch,
-                       const Creepages<double>& creepages) noexcept {
-  if (law == CreepLaw::fastsim) return fastsim(patch, creepages, strips);
+                       const Creepages<double>& creepages, CreepWanted wanted) noexcept {
+  if (law == CreepLaw::fastsim) return fastsim(patch, creepages, strips, wanted);
+  if (wanted == CreepWanted::force) {
+    const CreepPair<double> force = pair_of(law, patch, creepages);
+    return {force.x, force.y, {}};
+  }
   const Creepages<Rate> c{Rate::along(0, creepages.along), Rate::along(1, creepages.across),
                           Rate::along(2, creepages.spin)};
   const CreepPair<Rate> force = pair_of(law, patch, c);

@@ -10,10 +10,12 @@ struct CreepForce {
   double slope[2][3];  // of x and y over the creepages along, across and of spin, N, N, N m
 };
 
-/// The force of a patch under creepages, and its derivatives at a frozen patch.
+/// The force of a patch under creepages, and its derivatives at a frozen patch; 0 where they are
+/// not wanted.
 /// @param strips  of FASTSIM, 1 to kMostStrips; the work grows with their square
 CreepForce creep_force(CreepLaw law, int strips, const CreepPatch& patch,
-                       const Creepages<double>& creepages) noexcept;
+                       const Creepages<double>& creepages,
+                       CreepWanted wanted = CreepWanted::slopes) noexcept;
 
 /// The patch of normalised creepages: half lengths whose product is 1, a shear modulus and a limit
 /// of 1.

@@ -93,6 +93,10 @@ Real arc_tangent(Real x) noexcept {
   for (int n = 21; n > 0; n -= 2) sum = 1. / n - square * sum;
   return 8. * x * sum;
 }
+template <int n>
+Dual<n> arc_tangent(const Dual<n>& x) noexcept {
+  return dual::chain(arc_tangent(x.value), 1. / (1. + x.value * x.value), x);
+}
 
 /// exp(-x) for x of at least 0, within 1e-12.
 inline double falling_exponential(double x) noexcept {

@@ -32,18 +32,20 @@ Stiffness stiffness_of(const CreepPatch& p) noexcept {
           2. * p.limit / (kPi * a * b)};
 }
 
+template <CreepWanted wanted>
 void begin(const CreepPatch& p, int strips, Strips& s) noexcept {
   for (int j = 0; j < strips; ++j) {
     s.across[j] = (2. * j + 1.) / strips - 1.;
     s.edge[j] = p.half_length * square_root(1. - s.across[j] * s.across[j]);
     s.step[j] = 2. * s.edge[j] / strips;
     s.x[j] = s.y[j] = s.sum[0][j] = s.sum[1][j] = 0.;
-    for (int k = 0; k < 3; ++k)
+    for (int k = 0; k < (wanted == CreepWanted::slopes ? 3 : 0); ++k)
       s.x_slope[k][j] = s.y_slope[k][j] = s.sum_slope[0][k][j] = s.sum_slope[1][k][j] = 0.;
   }
 }
 
 /// One cell of each strip, from the leading edge on. @param part  of a cell that the step is long
+template <CreepWanted wanted>
 void roll(const CreepPatch& p, const Stiffness& of, const Creepages<double>& c, int cell,
           double part, int strips, Strips& s) noexcept {
   const double per_length = 1. / p.half_length;
@@ -54,59 +56,68 @@ void roll(const CreepPatch& p, const Stiffness& of, const Creepages<double>& c, 
     const double by_place = of.spin * p.half_width * s.across[j], by_middle = of.spin * middle;
     double x = s.x[j] - length * (of.along * c.along - by_place * c.spin);
     double y = s.y[j] - length * (of.across * c.across + by_middle * c.spin);
-    double x0 = s.x_slope[0][j] - length * of.along, y0 = s.y_slope[0][j];
-    double x1 = s.x_slope[1][j], y1 = s.y_slope[1][j] - length * of.across;
-    double x2 = s.x_slope[2][j] + length * by_place, y2 = s.y_slope[2][j] - length * by_middle;
     const double over = at * per_length;
     const double bound = of.highest * (1. - over * over - s.across[j] * s.across[j]);
     const double square = x * x + y * y;
     const bool slides = square > bound * bound;
     const double inverse = 1. / square_root(slides ? square : 1.);
     const double cut = slides ? bound * inverse : 1.;
-    // A stress that is cut keeps its direction: its derivatives lose what lies along it.
-    const double along_x = slides ? x * inverse : 0., along_y = slides ? y * inverse : 0.;
-    const double d0 = along_x * x0 + along_y * y0, d1 = along_x * x1 + along_y * y1,
-                 d2 = along_x * x2 + along_y * y2;
     s.x[j] = x * cut;
     s.y[j] = y * cut;
-    s.x_slope[0][j] = x0 = cut * (x0 - along_x * d0);
-    s.x_slope[1][j] = x1 = cut * (x1 - along_x * d1);
-    s.x_slope[2][j] = x2 = cut * (x2 - along_x * d2);
-    s.y_slope[0][j] = y0 = cut * (y0 - along_y * d0);
-    s.y_slope[1][j] = y1 = cut * (y1 - along_y * d1);
-    s.y_slope[2][j] = y2 = cut * (y2 - along_y * d2);
     s.sum[0][j] += x * cut;
     s.sum[1][j] += y * cut;
-    s.sum_slope[0][0][j] += x0;
-    s.sum_slope[0][1][j] += x1;
-    s.sum_slope[0][2][j] += x2;
-    s.sum_slope[1][0][j] += y0;
-    s.sum_slope[1][1][j] += y1;
-    s.sum_slope[1][2][j] += y2;
+    if constexpr (wanted == CreepWanted::slopes) {
+      double x0 = s.x_slope[0][j] - length * of.along, y0 = s.y_slope[0][j];
+      double x1 = s.x_slope[1][j], y1 = s.y_slope[1][j] - length * of.across;
+      double x2 = s.x_slope[2][j] + length * by_place, y2 = s.y_slope[2][j] - length * by_middle;
+      // A stress that is cut keeps its direction: its derivatives lose what lies along it.
+      const double along_x = slides ? x * inverse : 0., along_y = slides ? y * inverse : 0.;
+      const double d0 = along_x * x0 + along_y * y0, d1 = along_x * x1 + along_y * y1,
+                   d2 = along_x * x2 + along_y * y2;
+      s.x_slope[0][j] = x0 = cut * (x0 - along_x * d0);
+      s.x_slope[1][j] = x1 = cut * (x1 - along_x * d1);
+      s.x_slope[2][j] = x2 = cut * (x2 - along_x * d2);
+      s.y_slope[0][j] = y0 = cut * (y0 - along_y * d0);
+      s.y_slope[1][j] = y1 = cut * (y1 - along_y * d1);
+      s.y_slope[2][j] = y2 = cut * (y2 - along_y * d2);
+      s.sum_slope[0][0][j] += x0;
+      s.sum_slope[0][1][j] += x1;
+      s.sum_slope[0][2][j] += x2;
+      s.sum_slope[1][0][j] += y0;
+      s.sum_slope[1][1][j] += y1;
+      s.sum_slope[1][2][j] += y2;
+    }
   }
 }
 
-}  // namespace
-
-CreepForce fastsim(const CreepPatch& patch, const Creepages<double>& creepages,
-                   int strips) noexcept {
+template <CreepWanted wanted>
+CreepForce roll_over(const CreepPatch& patch, const Creepages<double>& creepages,
+                     int strips) noexcept {
   Strips s;
-  begin(patch, strips, s);
+  begin<wanted>(patch, strips, s);
   const Stiffness of = stiffness_of(patch);
   for (int cell = 0; cell < strips; ++cell)
-    roll(patch, of, creepages, cell, cell == 0 ? .5 : 1., strips, s);
+    roll<wanted>(patch, of, creepages, cell, cell == 0 ? .5 : 1., strips, s);
   CreepForce found{};
   const double width = 2. * patch.half_width / strips;
   for (int j = 0; j < strips; ++j) {
     const double area = width * s.step[j];
     found.x += area * s.sum[0][j];
     found.y += area * s.sum[1][j];
-    for (int k = 0; k < 3; ++k) {
+    for (int k = 0; k < (wanted == CreepWanted::slopes ? 3 : 0); ++k) {
       found.slope[0][k] += area * s.sum_slope[0][k][j];
       found.slope[1][k] += area * s.sum_slope[1][k][j];
     }
   }
   return found;
+}
+
+}  // namespace
+
+CreepForce fastsim(const CreepPatch& patch, const Creepages<double>& creepages, int strips,
+                   CreepWanted wanted) noexcept {
+  return wanted == CreepWanted::force ? roll_over<CreepWanted::force>(patch, creepages, strips)
+                                      : roll_over<CreepWanted::slopes>(patch, creepages, strips);
 }
 
 }  // namespace railstep

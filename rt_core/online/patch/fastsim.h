@@ -9,7 +9,7 @@ namespace railstep {
 /// the slip half-way between them; the first step from the leading edge is half a cell. Strips go
 /// side by side over the machine's lanes.
 /// @param strips  1 to kMostStrips
-CreepForce fastsim(const CreepPatch& patch, const Creepages<double>& creepages,
-                   int strips) noexcept;
+CreepForce fastsim(const CreepPatch& patch, const Creepages<double>& creepages, int strips,
+                   CreepWanted wanted) noexcept;
 
 }  // namespace railstep

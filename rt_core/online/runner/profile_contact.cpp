@@ -125,6 +125,7 @@ void find_profile_wheel(const RollingContact& c, double radius, double side, con
     normal[wheel.patches++] = zone[i].share * (part > 1.   ? own.normal
                                                : part > 0. ? own.normal * part
                                                            : 0.);
+    patch.last = {depth, own.normal, own.stiffness};
     fill_creep_patch(c, own, depth, patch);
     const double per = zone[i].cosine_of_wheel;
     const PressedPoint point =
@@ -188,9 +189,29 @@ double leaving(const WheelRows<double>& r, const double* v, const RailRate& rail
          ((r.normal_roll * v[3] + r.normal_yaw * v[5]) - r.normal_section * rail.roll);
 }
 
+struct NormalForce {
+  double normal, stiffness;  // N, N/m
+};
+
+/// The normal force of a patch at a depth above 0.
+NormalForce patch_normal_force(ProfilePatch& patch, double depth) noexcept {
+  constexpr double kNear = 1e-5;
+  FoundForce& last = patch.last;
+  const double held = last.depth - patch.zone.patch.collocation.gap;
+  const double part = (depth - last.depth) / held;
+  if (last.normal > 0. && std::fabs(part) < kNear) {
+    const double less = last.stiffness * held / last.normal - 1.;
+    return {last.normal * (1. + part * (1. + less) * (1. + .5 * less * part)),
+            last.stiffness * (1. + less * part)};
+  }
+  const PatchForce found = patch_force(patch_of(patch.zone), depth);
+  last = {depth, found.normal, found.stiffness};
+  return {found.normal, found.stiffness};
+}
+
 /// @param by_yaw    slip across by the yaw, m/s
 /// @param by_angle  the same by the plane's turn
-void find_slopes(const WheelRows<double>& r, const Turned& turned, const PatchForce& force,
+void find_slopes(const WheelRows<double>& r, const Turned& turned, const NormalForce& force,
                  double by_yaw, double by_angle, const ContactCreep& creep,
                  ContactSlopes& slopes) noexcept {
   fill_rates_and_spread(r, creep, slopes);
@@ -242,15 +263,15 @@ double turned_by(const ProfileWheel& wheel, const OverRail& at) noexcept {
   return most;
 }
 
-WheelForce profile_force(const RollingContact& c, const ProfileWheel& wheel, double radius,
-                         double side, const Rolling& rolling, const OverRail& at, const double* v,
+WheelForce profile_force(const RollingContact& c, ProfileWheel& wheel, double radius, double side,
+                         const Rolling& rolling, const OverRail& at, const double* v,
                          const RailRate& rail, double* stiffness, ContactSlopes* slopes) noexcept {
   WheelForce sum{-1., 0., 0., {}, 0., false, {}};
   int touching = 0, sliding = 0;
   const double spin = rolling.frame / radius + v[index_of(BodyMotion::pitch)];
   const double yawed = at.motion[index_of(BodyMotion::yaw)] - wheel.placed[3];
   for (int i = 0; i < wheel.patches; ++i) {
-    const ProfilePatch& patch = wheel.patch[i];
+    ProfilePatch& patch = wheel.patch[i];
     WheelRows<double> rows = patch.rows;
     const Turned turned = move_rows(wheel, patch.turn, at, rows);
     stiffness[i] = 0.;
@@ -261,14 +282,15 @@ WheelForce profile_force(const RollingContact& c, const ProfileWheel& wheel, dou
     }
     rows.across_spin += patch.across_turned * yawed;
     const Slip<double> slip = slip_of(rows, v, rolling.frame, radius, rail);
-    const PatchForce force = patch_force(patch_of(patch.zone), rows.depth);
+    const NormalForce force = patch_normal_force(patch, rows.depth);
     const double share = patch.zone.share;
     const double beyond = rows.depth - patch.zone.patch.collocation.gap;
     RollingPatch grown = patch.creep;
     if (grown.exponent > 0. && force.normal > 0.)
       grown.exponent = .5 * force.normal / (force.stiffness * beyond);
     const ContactCreep creep =
-        creep_on_rail(c.creep, grown, side, {beyond, force.normal}, slip, rolling);
+        creep_on_rail(c.creep, grown, side, {beyond, force.normal}, slip, rolling,
+                      slopes == nullptr ? CreepWanted::force : CreepWanted::slopes);
     stiffness[i] = share * force.stiffness;
     if (slopes != nullptr) {
       find_slopes(rows, turned, force, patch.across_turned * spin, -leaving(rows, v, rail), creep,

@@ -303,7 +303,8 @@ inline WheelForce wheel_force(const RollingContact& c, double radius, double sid
   const Slip<double> slip = slip_of(r, v, rolling.frame, radius, rail);
   const double normal = normal_force(c, r.depth);
   return wheel_force(r, normal, slip, rolling,
-                     creep_on_rail(c.creep, c.creep.patch, side, {r.depth, normal}, slip, rolling));
+                     creep_on_rail(c.creep, c.creep.patch, side, {r.depth, normal}, slip, rolling,
+                                   CreepWanted::force));
 }
 
 /// The same with derivatives.

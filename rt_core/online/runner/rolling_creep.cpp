@@ -39,19 +39,20 @@ void take_linear(const LinearCreep& linear, const double* creepage, ContactCreep
 /// Forces by a law, and the linear moment, less by Shen, Hedrick and Elkins' factor of linear creep
 /// over the limit: other laws have forces where linear ones are 0.
 void saturate(const RollingCreep& c, const CreepPatch& patch, const LinearCreep& linear,
-              const double* creepage, ContactCreep& found) noexcept {
+              const double* creepage, CreepWanted wanted, ContactCreep& found) noexcept {
   const CreepForce force =
-      creep_force(c.law, c.strips, patch, {creepage[0], creepage[1], creepage[2]});
+      creep_force(c.law, c.strips, patch, {creepage[0], creepage[1], creepage[2]}, wanted);
   const double x = sum_of(linear.by[0], creepage), y = sum_of(linear.by[1], creepage),
                moment = sum_of(linear.by[2], creepage);
   const double size = square_root(x * x + y * y), u = size / patch.limit;
   found.size = u;
   const bool slides = found.slides();
   const double factor = slides ? 1. / u : 1. - u * (1. / 3.) + u * u * (1. / 27.);
-  const double by_u = slides ? -1. / (u * u) : -1. / 3. + u * (2. / 27.);
   found.force[0] = force.x;
   found.force[1] = force.y;
   found.force[2] = factor * moment;
+  if (wanted == CreepWanted::force) return;
+  const double by_u = slides ? -1. / (u * u) : -1. / 3. + u * (2. / 27.);
   for (int k = 0; k < 3; ++k) {
     found.by_slip[0][k] = force.slope[0][k];
     found.by_slip[1][k] = force.slope[1][k];
@@ -90,7 +91,8 @@ void mirror(ContactCreep& creep) noexcept {
 }  // namespace
 
 ContactCreep creep_by_law(const RollingCreep& c, const RollingPatch& of, double friction,
-                          const Pressed& pressed, const Slip<double>& slip, double speed) noexcept {
+                          const Pressed& pressed, const Slip<double>& slip, double speed,
+                          CreepWanted wanted) noexcept {
   ContactCreep found{};
   const double size = of.exponent > 0. ? square_root(pressed.depth) : 1.;
   const CreepPatch patch{size * of.half_length, size * of.half_width, of.shear,
@@ -103,10 +105,12 @@ ContactCreep creep_by_law(const RollingCreep& c, const RollingPatch& of, double 
   if (c.law == CreepLaw::linear)
     take_linear(linear, creepage, found);
   else
-    saturate(c, patch, linear, creepage, found);
-  find_by_normal(of.exponent, pressed.normal, creepage, found);
-  for (int i = 0; i < 3; ++i)
-    for (double& slope : found.by_slip[i]) slope *= per_speed;
+    saturate(c, patch, linear, creepage, wanted, found);
+  if (wanted == CreepWanted::slopes) {
+    find_by_normal(of.exponent, pressed.normal, creepage, found);
+    for (int i = 0; i < 3; ++i)
+      for (double& slope : found.by_slip[i]) slope *= per_speed;
+  }
   if (backwards) mirror(found);
   return found;
 }

@@ -54,18 +54,19 @@ inline double per_rolling(double speed) noexcept {
 
 /// Creep by a law with a limit, or of a patch that grows.
 ContactCreep creep_by_law(const RollingCreep& c, const RollingPatch& patch, double friction,
-                          const Pressed& pressed, const Slip<double>& slip, double speed) noexcept;
+                          const Pressed& pressed, const Slip<double>& slip, double speed,
+                          CreepWanted wanted) noexcept;
 
 /// Creep of a contact in touch by the scene's law. The moment is that of linear creep times
 /// 1 - u/3 + u^2/27, u the linear force over the limit, and 1/u from u = 3 on.
 /// @param friction  coefficient
 /// @param speed  of the wheelset, m/s
 inline ContactCreep contact_creep(const RollingCreep& c, const RollingPatch& patch, double friction,
-                                  const Pressed& pressed, const Slip<double>& slip,
-                                  double speed) noexcept {
+                                  const Pressed& pressed, const Slip<double>& slip, double speed,
+                                  CreepWanted wanted = CreepWanted::slopes) noexcept {
   if (!(pressed.normal > kLeastNormal)) return {};
   if (c.law != CreepLaw::linear || patch.exponent > 0.)
-    return creep_by_law(c, patch, friction, pressed, slip, speed);
+    return creep_by_law(c, patch, friction, pressed, slip, speed, wanted);
   const double per = per_rolling(speed), turned = speed < 0. ? -per : per;
   const double area = patch.half_length * patch.half_width, force = patch.shear * area;
   const double along = -force * patch.kalker.c11 * per, across = -force * patch.kalker.c22 * per,
@@ -101,16 +102,18 @@ double left_by_slip(const RollingFriction& f, const Slip<double>& slip) noexcept
 /// Creep of a contact in touch.
 /// @param side  1 of the left rail, -1 of the right
 /// @param slip  of the wheel over the rail
+/// @param wanted  derivatives that are not wanted may be 0
 inline ContactCreep creep_on_rail(const RollingCreep& c, const RollingPatch& patch, double side,
                                   const Pressed& pressed, const Slip<double>& slip,
-                                  const Rolling& rolling) noexcept {
+                                  const Rolling& rolling,
+                                  CreepWanted wanted = CreepWanted::slopes) noexcept {
   const RollingFriction& f = c.friction;
   const double most = rolling.grip * f.rail[side > 0. ? 0 : 1];
   const Slip<double> all = with_creep_before(slip, rolling);
-  if (!falls(f)) return contact_creep(c, patch, most, pressed, all, rolling.over);
+  if (!falls(f)) return contact_creep(c, patch, most, pressed, all, rolling.over, wanted);
   const double part = left_by_slip(f, slip);
-  ContactCreep creep = contact_creep(c, patch, part * most, pressed, all, rolling.over);
-  add_fall(f, part, all, slip, creep);
+  ContactCreep creep = contact_creep(c, patch, part * most, pressed, all, rolling.over, wanted);
+  if (wanted == CreepWanted::slopes) add_fall(f, part, all, slip, creep);
   return creep;
 }
 

@@ -149,8 +149,8 @@ WheelForce WheelsetLaw::on_profile(const Placed& at, int side, const LawSlopes* 
                                    double* steep) const noexcept {
   double over[kMotions];
   place_over_rail(at.under, side, at.u, over);
-  const ProfileWheel& wheel = profile[side];
-  ContactSlopes* const own = profile[side].slopes;
+  ProfileWheel& wheel = profile[side];
+  ContactSlopes* const own = wheel.slopes;
   own[0] = {};
   double stiffness[kMostZones] = {};
   const WheelForce f =

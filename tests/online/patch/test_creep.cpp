@@ -146,6 +146,8 @@ TEST_CASE("derivatives of creep forces are those of the complex step", "[creep]"
                              20e3 * (1.1 + part(engine)), kalker(ratio, .28)};
       const double c[3] = {5e-3 * part(engine), 5e-3 * part(engine), .6 * part(engine)};
       const CreepForce force = creep_force(law, 10, patch, {c[0], c[1], c[2]});
+      const CreepForce alone = creep_force(law, 10, patch, {c[0], c[1], c[2]}, CreepWanted::force);
+      CHECK((alone.x == force.x && alone.y == force.y));
       for (int k = 0; k < 3; ++k) {
         constexpr double kStep = 1e-40;
         Complex z[3] = {c[0], c[1], c[2]};

@@ -64,7 +64,7 @@ Found found(const RollingContact& c, double side, const Riding& d) {
 }
 
 /// Depth of a wheel at a place in the geometry of another.
-double depth_of(const RollingContact& c, const ProfileWheel& wheel, double side, const double* u,
+double depth_of(const RollingContact& c, ProfileWheel wheel, double side, const double* u,
                 double section) {
   const double none[6] = {};
   double stiffness[kMostZones];
@@ -220,7 +220,7 @@ TEST_CASE("planes of contact turn as the bodies move", "[profile_contact]") {
     d.u[y] = -shift;
     d.u[yaw] = -4e-3;
     press(d, by_profiles);
-    const ProfileWheel wheel = found(pair.contact, -1., d).wheel;
+    ProfileWheel wheel = found(pair.contact, -1., d).wheel;
     if (wheel.patches != 1) continue;
     const bool throat = shift > 5.5e-3;
     on_throat += throat ? 1 : 0;
@@ -278,8 +278,8 @@ TEST_CASE("slopes of a patch are those of its forces", "[profile_contact]") {
     for (int n = 0; n < 200; ++n) {
       const double side = n % 2 == 0 ? 1. : -1.;
       const Riding d = draws.state(side);
-      const Found at_once = found(pair.contact, side, d);
-      const ProfileWheel& wheel = at_once.wheel;
+      Found at_once = found(pair.contact, side, d);
+      ProfileWheel& wheel = at_once.wheel;
       const WheelForce& f = at_once.force;
       if (wheel.patches != 1 || f.depth < 1e-5 || f.slides) continue;
       double stiffness[kMostZones];
