@@ -41,7 +41,7 @@ double resistance_of(const RunningLoads& loads) {
   return sum;
 }
 
-constexpr double kMass = 32000. + 2. * 2615. + 4. * 1813.;             // kg, of the whole vehicle
+constexpr double kWholeMass = 32000. + 2. * 2615. + 4. * 1813.;        // kg, of the whole vehicle
 constexpr double kOfTwoTenths = .168206167, kOfOneTenth = .091105769;  // slopes by conicity
 
 /// Acceleration towards the inside of a curve in the track's plane that the rails give, m/s2.
@@ -94,8 +94,8 @@ TEST_CASE("the rails carry the vehicle's acceleration in a curve", "[curving]") 
     double lateral = 0.;
     for (const WheelsetLoad& set : loads.wheelsets) lateral += set.sum_y;
     // They push the vehicle inwards, to the left, and are pushed to the right.
-    const double inwards = kMass * curve.speed * curve.speed * curve.curvature;
-    CHECK(lateral == Approx(-kMass * lateral_acceleration(curve)).margin(1e-3 * inwards));
+    const double inwards = kWholeMass * curve.speed * curve.speed * curve.curvature;
+    CHECK(lateral == Approx(-kWholeMass * lateral_acceleration(curve)).margin(1e-3 * inwards));
   }
 }
 
@@ -168,7 +168,7 @@ TEST_CASE("a vehicle that coasts through a curve loses the speed that its drive 
   const double resistance = resistance_of(running_loads(in_curve(curve)));
   const Traced run(in_curve(curve, {"vehicle[0].drive=\"force\"", "step.duration_s=2.0"}));
   const std::vector<double> v = run["car.speed_m_per_s"];
-  const double rolling = kMass + 4. * 112. / (.46 * .46);
+  const double rolling = kWholeMass + 4. * 112. / (.46 * .46);
   CHECK((v.front() - v.back()) * rolling / 2. == Approx(resistance).epsilon(5e-3));
 }
 
@@ -184,7 +184,7 @@ TEST_CASE("a ring runs through a curve", "[curving]") {
     first += y.front();
     mean += std::accumulate(y.begin(), y.end(), 0.) / static_cast<double>(y.size());
   }
-  const double expected = -kMass * lateral_acceleration({0., 32., 1e-3, .08});
+  const double expected = -kWholeMass * lateral_acceleration({0., 32., 1e-3, .08});
   CHECK(first == Approx(expected).epsilon(1e-3));
   // Sleepers pass below the wheels.
   CHECK(mean == Approx(expected).epsilon(1e-2));
@@ -236,12 +236,12 @@ TEST_CASE("a gradient draws a vehicle back by its weight", "[curving]") {
   Words words = flat;
   words.push_back("line.gradient_table=[[0.0,0.03]]");
   const Traced run(in_curve(straight, words));
-  CHECK(run["car.drive_n"].back() - level == Approx(kMass * 9.81 * .03).epsilon(1e-4));
+  CHECK(run["car.drive_n"].back() - level == Approx(kWholeMass * 9.81 * .03).epsilon(1e-4));
   // In a sag the rails also turn the vehicle's way upwards.
   words.back() = "line.gradient_table=[[-500.0,-0.05],[500.0,0.05]]";
   double q = 0.;
   for (const WheelLoad& wheel : running_loads(in_curve(straight, words)).wheels) q += wheel.q;
-  CHECK(q == Approx(kMass * (9.81 + 28. * 28. * 1e-4)).epsilon(1e-4));
+  CHECK(q == Approx(kWholeMass * (9.81 + 28. * 28. * 1e-4)).epsilon(1e-4));
 }
 
 TEST_CASE("energy is in balance through a transition", "[curving]") {
@@ -288,8 +288,9 @@ TEST_CASE("a vehicle with profiles starts in a curve of 100 m and stays as it st
         CHECK(run[column].back() == Approx(value).margin(1e-6 * 1e5));
     }
     const double v = std::stod(speed), roll = std::asin(.06 / 1.5);
-    CHECK(sum ==
-          Approx(kMass * (9.81 * std::cos(roll) + v * v * .01 * std::sin(roll))).epsilon(5e-4));
+    CHECK(
+        sum ==
+        Approx(kWholeMass * (9.81 * std::cos(roll) + v * v * .01 * std::sin(roll))).epsilon(5e-4));
   }
 }
 

@@ -44,7 +44,8 @@ bool profiles_are_valid(const ProfileContact& c) noexcept {
   for (int i = 1; i < kSearchStrips; ++i)
     if (!(pair.search_place[i] > pair.search_place[i - 1])) return false;
   return profile_is_valid(pair.wheel) && profile_is_valid(pair.rail) && pair.half_distance > 0. &&
-         pair.radius > 0. && pair.modulus > 0. && pair.patches > 0 && c.poisson >= 0.;
+         pair.radius > 0. && pair.modulus > 0. && pair.patches > 0 && c.poisson > -1. &&
+         c.poisson < .5;
 }
 
 bool contact_is_valid(const RollingContact& c) noexcept {
