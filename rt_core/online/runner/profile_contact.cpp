@@ -195,7 +195,7 @@ struct NormalForce {
 
 /// The normal force of a patch at a depth above 0.
 NormalForce patch_normal_force(ProfilePatch& patch, double depth) noexcept {
-  constexpr double kNear = 1e-5;
+  constexpr double kNear = 1e-6;
   FoundForce& last = patch.last;
   const double held = last.depth - patch.zone.patch.collocation.gap;
   const double part = (depth - last.depth) / held;

@@ -65,8 +65,9 @@ void find_profile_wheel(const RollingContact& c, double radius, double side, con
 double turned_by(const ProfileWheel& wheel, const OverRail& at) noexcept;
 
 /// Sum of the forces of a wheel's patches at a place near that at which it was found. Most depths
-/// of a solve are within 1e-5 of one for which a patch's force was found in full. Their force is by
-/// the power law that has its value and its slope there; it errs by less than 1e-10.
+/// of a solve are within 1e-6 of one for which a patch's force was found in full. Their force is by
+/// the power law that has its value and its slope there; it errs by less than 2e-10, and by up to
+/// the distance itself where a strip begins to touch in between.
 /// @param wheel  its patches keep the forces that were found in full
 /// @param stiffness  [patches] out: of the normal forces, N/m
 /// @param slopes     [patches] out; null: none
