@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kGap = 5e-3;   // m
 constexpr double kKink = .35;   // rad
-constexpr double kSwing = .5;   // rad
+constexpr double kSwing = .5;   // rad, of a spline away from the chord of two points
 constexpr double kFarOff = 8.;  // tolerances
 
 using Sparse = Eigen::SparseMatrix<double>;

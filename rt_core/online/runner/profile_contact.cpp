@@ -189,29 +189,24 @@ double leaving(const WheelRows<double>& r, const double* v, const RailRate& rail
          ((r.normal_roll * v[3] + r.normal_yaw * v[5]) - r.normal_section * rail.roll);
 }
 
-struct NormalForce {
-  double normal, stiffness;  // N, N/m
-};
-
 /// The normal force of a patch at a depth above 0.
-NormalForce patch_normal_force(ProfilePatch& patch, double depth) noexcept {
+PatchNormal patch_normal_force(ProfilePatch& patch, double depth) noexcept {
   constexpr double kNear = 1e-6;
-  FoundForce& last = patch.last;
+  PatchNormal& last = patch.last;
   const double held = last.depth - patch.zone.patch.collocation.gap;
   const double part = (depth - last.depth) / held;
   if (last.normal > 0. && std::fabs(part) < kNear) {
     const double less = last.stiffness * held / last.normal - 1.;
-    return {last.normal * (1. + part * (1. + less) * (1. + .5 * less * part)),
+    return {depth, last.normal * (1. + part * (1. + less) * (1. + .5 * less * part)),
             last.stiffness * (1. + less * part)};
   }
   const PatchForce found = patch_force(patch_of(patch.zone), depth);
-  last = {depth, found.normal, found.stiffness};
-  return {found.normal, found.stiffness};
+  return last = {depth, found.normal, found.stiffness};
 }
 
 /// @param by_yaw    slip across by the yaw, m/s
 /// @param by_angle  the same by the plane's turn
-void find_slopes(const WheelRows<double>& r, const Turned& turned, const NormalForce& force,
+void find_slopes(const WheelRows<double>& r, const Turned& turned, const PatchNormal& force,
                  double by_yaw, double by_angle, const ContactCreep& creep,
                  ContactSlopes& slopes) noexcept {
   fill_rates_and_spread(r, creep, slopes);
@@ -282,7 +277,7 @@ WheelForce profile_force(const RollingContact& c, ProfileWheel& wheel, double ra
     }
     rows.across_spin += patch.across_turned * yawed;
     const Slip<double> slip = slip_of(rows, v, rolling.frame, radius, rail);
-    const NormalForce force = patch_normal_force(patch, rows.depth);
+    const PatchNormal force = patch_normal_force(patch, rows.depth);
     const double share = patch.zone.share;
     const double beyond = rows.depth - patch.zone.patch.collocation.gap;
     RollingPatch grown = patch.creep;

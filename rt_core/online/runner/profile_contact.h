@@ -26,8 +26,8 @@ struct PatchTurn {
   double by_shift, by_roll, by_section;  // -w r / k, rad/m; r / k; -w / k
 };
 
-/// A normal force that was found in full.
-struct FoundForce {
+/// A normal force of a patch.
+struct PatchNormal {
   double depth, normal, stiffness;  // m, N, N/m
 };
 
@@ -36,7 +36,7 @@ struct ProfilePatch {
   PatchTurn turn;
   double across_turned;  // slip across by a unit of yaw, over the wheel's spin, m
   RollingPatch creep;
-  FoundForce last;  // depths that are very near to it follow its power law
+  PatchNormal last;  // found in full; depths very near to it follow its power law
   WheelZone zone;
 };
 
